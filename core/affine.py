@@ -1,0 +1,188 @@
+"""Affine maps of the plane: compose, invert, measure, and take apart by polar decomposition.
+
+A map is an array (..., 2, 3), ``[[a, b, e], [c, d, f]]``, standing for ``w(x) = L x + t`` with the linear part
+``L = [[a, b], [c, d]]`` and the translation ``t = (e, f)``. All functions work on stacks of maps at once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def compose(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
+    """Compose maps, the inner one applied first.
+
+    Parameters
+    ----------
+    outer, inner : (..., 2, 3)
+        Stacks of maps, broadcast against each other.
+
+    Returns
+    -------
+    (..., 2, 3)
+        ``outer(inner(x))``.
+    """
+    outer, inner = np.asarray(outer, dtype=float), np.asarray(inner, dtype=float)
+    product = outer[..., :, :2] @ inner
+    product[..., :, 2] += outer[..., :, 2]
+    return product
+
+
+def transform(maps: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Apply maps (..., 2, 3) to points (..., 2), broadcast against each other."""
+    maps, points = np.asarray(maps, dtype=float), np.asarray(points, dtype=float)
+    return np.einsum("...ij,...j->...i", maps[..., :, :2], points) + maps[..., :, 2]
+
+
+def invert(maps: np.ndarray) -> np.ndarray:
+    """Inverse of maps (..., 2, 3).
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If a map is singular.
+    """
+    maps = np.asarray(maps, dtype=float)
+    linear = np.linalg.inv(maps[..., :, :2])
+    translation = -np.einsum("...ij,...j->...i", linear, maps[..., :, 2])
+    return np.concatenate([linear, translation[..., None]], axis=-1)
+
+
+def determinant(linear: np.ndarray) -> np.ndarray:
+    """Determinant of linear parts (..., 2, 2): the signed factor by which areas grow."""
+    return linear[..., 0, 0] * linear[..., 1, 1] - linear[..., 0, 1] * linear[..., 1, 0]
+
+
+def singular_values(linear: np.ndarray) -> np.ndarray:
+    """Singular values of linear parts (..., 2, 2), in closed form.
+
+    Returns
+    -------
+    (..., 2)
+        The largest, which is the Lipschitz constant of the map, and the smallest, which is never negative.
+    """
+    a, b, c, d = (linear[..., i, j] for i in (0, 1) for j in (0, 1))
+    turning = np.hypot(a + d, c - b)
+    mirroring = np.hypot(a - d, b + c)
+    return np.stack([(turning + mirroring) / 2, np.abs(turning - mirroring) / 2], axis=-1)
+
+
+def spectral_radius(linear: np.ndarray) -> np.ndarray:
+    """Largest absolute eigenvalue of linear parts (..., 2, 2)."""
+    half_trace = (linear[..., 0, 0] + linear[..., 1, 1]) / 2
+    det = determinant(linear)
+    discriminant = half_trace**2 - det
+    real = np.abs(half_trace) + np.sqrt(np.maximum(discriminant, 0))
+    return np.where(discriminant >= 0, real, np.sqrt(np.maximum(det, 0)))
+
+
+def rotation(angle: np.ndarray | float, reflects: np.ndarray | bool = False) -> np.ndarray:
+    """Orthogonal matrices (..., 2, 2): a turn by `angle` radians, after a mirroring of y where `reflects`."""
+    angle = np.asarray(angle, dtype=float)
+    sign = np.where(reflects, -1.0, 1.0)
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.stack(
+        [np.stack([cos, -sin * sign], axis=-1), np.stack([sin, cos * sign], axis=-1)], axis=-2
+    )
+
+
+def polar(linear: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Polar decomposition ``L = Q S`` in closed form, defined for every L, singular ones included.
+
+    Burch & Hart 1997, Section 3, reach the same factors by iteration (`polar_by_iteration`).
+
+    Parameters
+    ----------
+    linear : (..., 2, 2)
+
+    Returns
+    -------
+    angle : (...,)
+        Radians in [-pi, pi]; ``Q = rotation(angle, reflects)``.
+    reflects : (...,) bool
+        True where det L < 0.
+    stretch : (..., 2, 2)
+        S, symmetric and positive semidefinite.
+    """
+    linear = np.asarray(linear, dtype=float)
+    a, b, c, d = (linear[..., i, j] for i in (0, 1) for j in (0, 1))
+    reflects = determinant(linear) < 0
+    # Adding 0.0 turns -0.0 into 0.0, which arctan2 would tell apart: a map of no size has no angle.
+    angle = np.where(reflects, np.arctan2(b + c + 0.0, a - d + 0.0), np.arctan2(c - b + 0.0, a + d + 0.0))
+    orthogonal = rotation(angle, reflects)
+    stretch = np.swapaxes(orthogonal, -1, -2) @ linear
+    return angle, reflects, (stretch + np.swapaxes(stretch, -1, -2)) / 2
+
+
+def polar_by_iteration(linear: np.ndarray, tolerance: float = 1e-15) -> tuple[np.ndarray, np.ndarray, int]:
+    """Polar decomposition of one matrix as the paper computes it (Burch & Hart 1997, Eq. 2 and 3).
+
+    Parameters
+    ----------
+    linear : (2, 2)
+        Must not be singular; the iteration averages Q with its inverse transpose.
+    tolerance
+        Relative change of Q at which the iteration stops.
+
+    Returns
+    -------
+    orthogonal : (2, 2)
+    stretch : (2, 2)
+    iterations : int
+        Grows with the conditioning of `linear`.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If `linear` is singular.
+    """
+    orthogonal = np.array(linear, dtype=float)
+    for iteration in range(1, 201):
+        following = (orthogonal + np.linalg.inv(orthogonal).T) / 2
+        change = np.abs(following - orthogonal).max()
+        orthogonal = following
+        if change <= tolerance * np.abs(orthogonal).max():
+            break
+    return orthogonal, np.linalg.inv(orthogonal) @ linear, iteration
+
+
+def to_parameters(maps: np.ndarray) -> np.ndarray:
+    """Maps as the numbers that a person edits.
+
+    The linear part is taken apart as a turn, a shear along x and scales, ``L = R(angle) [[1, shear], [0, 1]]
+    diag(scale_x, scale_y)``; a negative ``scale_y`` is a reflection.
+
+    Parameters
+    ----------
+    maps : (..., 2, 3)
+
+    Returns
+    -------
+    (..., 6)
+        Angle in radians, scale_x >= 0, scale_y, shear, and the translation e, f.
+    """
+    maps = np.asarray(maps, dtype=float)
+    first, second = maps[..., :, 0], maps[..., :, 1]
+    scale_x = np.hypot(first[..., 0], first[..., 1])
+    # With no first column the turn is read off the second, whose direction at angle zero is +y.
+    flat = scale_x == 0
+    angle = np.where(
+        flat, np.arctan2(-second[..., 0], second[..., 1] + 0.0), np.arctan2(first[..., 1], first[..., 0])
+    )
+    cos, sin = np.cos(angle), np.sin(angle)
+    along = cos * second[..., 0] + sin * second[..., 1]
+    scale_y = -sin * second[..., 0] + cos * second[..., 1]
+    # A map with no height has no shear to speak of: its second column is dropped into the first's direction.
+    shear = np.divide(along, scale_y, out=np.zeros_like(along), where=scale_y != 0)
+    return np.stack([angle, scale_x, scale_y, shear, maps[..., 0, 2], maps[..., 1, 2]], axis=-1)
+
+
+def from_parameters(parameters: np.ndarray) -> np.ndarray:
+    """Maps (..., 2, 3) from the numbers of `to_parameters` (..., 6)."""
+    angle, scale_x, scale_y, shear, e, f = np.moveaxis(np.asarray(parameters, dtype=float), -1, 0)
+    upper = np.stack(
+        [np.stack([scale_x, shear * scale_y], axis=-1), np.stack([np.zeros_like(scale_x), scale_y], axis=-1)],
+        axis=-2,
+    )
+    translation = np.stack([e, f], axis=-1)
+    return np.concatenate([rotation(angle) @ upper, translation[..., None]], axis=-1)
