@@ -81,12 +81,10 @@ def rotation(angle: np.ndarray | float, reflects: np.ndarray | bool = False) -> 
     angle = np.asarray(angle, dtype=float)
     sign = np.where(reflects, -1.0, 1.0)
     cos, sin = np.cos(angle), np.sin(angle)
-    return np.stack(
-        [np.stack([cos, -sin * sign], axis=-1), np.stack([sin, cos * sign], axis=-1)], axis=-2
-    )
+    return np.stack([np.stack([cos, -sin * sign], axis=-1), np.stack([sin, cos * sign], axis=-1)], axis=-2)
 
 
-def polar(linear: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def polar(linear: np.ndarray, reflects: np.ndarray | bool | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Polar decomposition ``L = Q S`` in closed form, defined for every L, singular ones included.
 
     Burch & Hart 1997, Section 3, reach the same factors by iteration (`polar_by_iteration`).
@@ -94,19 +92,22 @@ def polar(linear: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     Parameters
     ----------
     linear : (..., 2, 2)
+    reflects : (...,) bool, optional
+        Whether Q is to be a reflection; by default where det L < 0. A singular L can be taken either way. Elsewhere
+        the wrong choice still gives ``L = Q S``, with an S that has one negative eigenvalue.
 
     Returns
     -------
     angle : (...,)
         Radians in [-pi, pi]; ``Q = rotation(angle, reflects)``.
     reflects : (...,) bool
-        True where det L < 0.
     stretch : (..., 2, 2)
         S, symmetric and positive semidefinite.
     """
     linear = np.asarray(linear, dtype=float)
     a, b, c, d = (linear[..., i, j] for i in (0, 1) for j in (0, 1))
-    reflects = determinant(linear) < 0
+    if reflects is None:
+        reflects = determinant(linear) < 0
     # Adding 0.0 turns -0.0 into 0.0, which arctan2 would tell apart: a map of no size has no angle.
     angle = np.where(reflects, np.arctan2(b + c + 0.0, a - d + 0.0), np.arctan2(c - b + 0.0, a + d + 0.0))
     orthogonal = rotation(angle, reflects)
@@ -147,10 +148,11 @@ def polar_by_iteration(linear: np.ndarray, tolerance: float = 1e-15) -> tuple[np
 
 
 def to_parameters(maps: np.ndarray) -> np.ndarray:
-    """Maps as the numbers that a person edits.
+    """Maps as the numbers that a person edits; nothing is lost, whatever the map.
 
-    The linear part is taken apart as a turn, a shear along x and scales, ``L = R(angle) [[1, shear], [0, 1]]
-    diag(scale_x, scale_y)``; a negative ``scale_y`` is a reflection.
+    The linear part is a turn of an upper triangle, ``L = R(angle) [[scale_x, shear], [0, scale_y]]``: the x axis
+    is stretched to `scale_x` and turned, the y axis is stretched to `scale_y` and leans over by `shear`. A negative
+    `scale_y` is a reflection.
 
     Parameters
     ----------
@@ -162,27 +164,20 @@ def to_parameters(maps: np.ndarray) -> np.ndarray:
         Angle in radians, scale_x >= 0, scale_y, shear, and the translation e, f.
     """
     maps = np.asarray(maps, dtype=float)
-    first, second = maps[..., :, 0], maps[..., :, 1]
-    scale_x = np.hypot(first[..., 0], first[..., 1])
-    # With no first column the turn is read off the second, whose direction at angle zero is +y.
-    flat = scale_x == 0
-    angle = np.where(
-        flat, np.arctan2(-second[..., 0], second[..., 1] + 0.0), np.arctan2(first[..., 1], first[..., 0])
-    )
+    (a, b, e), (c, d, f) = (np.moveaxis(maps[..., row, :], -1, 0) for row in (0, 1))
+    scale_x = np.hypot(a, c)
+    # Without a first column the turn is read off the second, which points along +y at angle zero.
+    angle = np.where(scale_x == 0, np.arctan2(-b + 0.0, d + 0.0), np.arctan2(c + 0.0, a + 0.0))
     cos, sin = np.cos(angle), np.sin(angle)
-    along = cos * second[..., 0] + sin * second[..., 1]
-    scale_y = -sin * second[..., 0] + cos * second[..., 1]
-    # A map with no height has no shear to speak of: its second column is dropped into the first's direction.
-    shear = np.divide(along, scale_y, out=np.zeros_like(along), where=scale_y != 0)
-    return np.stack([angle, scale_x, scale_y, shear, maps[..., 0, 2], maps[..., 1, 2]], axis=-1)
+    return np.stack([angle, scale_x, cos * d - sin * b, cos * b + sin * d, e, f], axis=-1)
 
 
 def from_parameters(parameters: np.ndarray) -> np.ndarray:
     """Maps (..., 2, 3) from the numbers of `to_parameters` (..., 6)."""
     angle, scale_x, scale_y, shear, e, f = np.moveaxis(np.asarray(parameters, dtype=float), -1, 0)
-    upper = np.stack(
-        [np.stack([scale_x, shear * scale_y], axis=-1), np.stack([np.zeros_like(scale_x), scale_y], axis=-1)],
-        axis=-2,
-    )
-    translation = np.stack([e, f], axis=-1)
-    return np.concatenate([rotation(angle) @ upper, translation[..., None]], axis=-1)
+    cos, sin = np.cos(angle), np.sin(angle)
+    rows = [
+        [cos * scale_x, cos * shear - sin * scale_y, e],
+        [sin * scale_x, sin * shear + cos * scale_y, f],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

@@ -71,9 +71,7 @@ def steps(
     return results
 
 
-def run(
-    function: Callable[[Any], Result], chunks: Sequence[Any], threads: int | None = None
-) -> list[Result]:
+def run(function: Callable[[Any], Result], chunks: Sequence[Any], threads: int | None = None) -> list[Result]:
     """`function` of every chunk in order, over threads, joined before it returns."""
     threads = min(thread_count(threads), len(chunks))
     if threads <= 1:
@@ -82,9 +80,7 @@ def run(
         return list(pool.map(function, chunks))
 
 
-def finish(
-    generator: Generator[float, None, Result], progress: Callable[[float], bool | None] | None = None
-) -> Result:
+def finish(generator: Generator[float, None, Result], progress: Callable[[float], bool | None] | None = None) -> Result:
     """Run a generator of steps to its end.
 
     Parameters

@@ -1,0 +1,231 @@
+"""Where an attractor can be: words that shrink, the enclosing disc, the outer polygon.
+
+The kernels take maps as rows: `linear` (N, 4) holds a, b, c, d and `translation` (N, 2) holds e, f. A *word* is a
+composition ``w_i w_j w_k ...``; the attractor is the union of its images under any set of words that has one prefix
+of every infinite word, here called a *cover*.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+COVERED, NO_ATTRACTOR, UNDECIDED = 0, 1, 2
+"""Outcomes of `cover`."""
+
+CONTRACTIVE_NORM = 0.9
+"""Every word of norm at most this: the maps contract."""
+
+CONTRACTIVITY_BUDGET = 20_000
+"""Words looked at before contractivity is given up as undecided."""
+
+TIGHT_NORM = 0.5
+TIGHT_BUDGET = 600
+"""Words of at most this norm give a disc at most (1 + 0.5) / (1 - 0.5) times too large, mostly far less."""
+
+SPECTRAL_SLACK = 1e-12
+"""Rounding allowed when a spectral radius is compared with 1."""
+
+DIRECTIONS = 16
+"""Sides of the outer polygon."""
+
+
+@njit(nogil=True, cache=True)
+def norm(a, b, c, d):
+    """Largest singular value of [[a, b], [c, d]]."""
+    turning = math.sqrt((a + d) * (a + d) + (c - b) * (c - b))
+    mirroring = math.sqrt((a - d) * (a - d) + (b + c) * (b + c))
+    return (turning + mirroring) / 2
+
+
+@njit(nogil=True, cache=True)
+def spectral_radius(a, b, c, d):
+    """Largest absolute eigenvalue of [[a, b], [c, d]]."""
+    half_trace, det = (a + d) / 2, a * d - b * c
+    discriminant = half_trace * half_trace - det
+    if discriminant >= 0:
+        return abs(half_trace) + math.sqrt(discriminant)
+    return math.sqrt(det)
+
+
+@njit(nogil=True, cache=True)
+def cover(linear, limit, budget):
+    """Words, shortest first, until every branch has one of norm at most `limit`.
+
+    An attractor exists if and only if the joint spectral radius of the linear parts is below 1, that is, if every long
+    enough word has a norm below 1 (Berger & Wang 1992). A word of spectral radius 1 or more rules it out.
+
+    Parameters
+    ----------
+    linear : (N, 4)
+    limit : float
+        Below 1.
+    budget : int
+        Words looked at before giving up.
+
+    Returns
+    -------
+    outcome : int
+        COVERED, NO_ATTRACTOR or UNDECIDED.
+    parent : (M,)
+        Index of the word without its last letter, -1 for words of one letter.
+    letter : (M,)
+        The last letter.
+    product : (M, 4)
+        The word's linear part.
+    size : (M,)
+        Its norm. The words with ``size <= limit`` are the cover, the others lead to them.
+    """
+    count_maps = linear.shape[0]
+    capacity = max(budget, count_maps)
+    parent = np.empty(capacity, np.int32)
+    letter = np.empty(capacity, np.int32)
+    product = np.empty((capacity, 4))
+    size = np.empty(capacity)
+    count, head, outcome = count_maps, 0, COVERED
+    for i in range(count_maps):
+        parent[i], letter[i] = -1, i
+        product[i] = linear[i]
+        size[i] = norm(linear[i, 0], linear[i, 1], linear[i, 2], linear[i, 3])
+    while head < count:
+        if size[head] > limit:
+            a, b, c, d = product[head, 0], product[head, 1], product[head, 2], product[head, 3]
+            if size[head] >= 1 - SPECTRAL_SLACK and spectral_radius(a, b, c, d) >= 1 - SPECTRAL_SLACK:
+                outcome = NO_ATTRACTOR
+                break
+            if count + count_maps > capacity:
+                outcome = UNDECIDED
+                break
+            for i in range(count_maps):
+                p, q, r, s = linear[i, 0], linear[i, 1], linear[i, 2], linear[i, 3]
+                parent[count], letter[count] = head, i
+                product[count, 0], product[count, 1] = a * p + b * r, a * q + b * s
+                product[count, 2], product[count, 3] = c * p + d * r, c * q + d * s
+                size[count] = norm(product[count, 0], product[count, 1], product[count, 2], product[count, 3])
+                count += 1
+        head += 1
+    return outcome, parent[:count], letter[:count], product[:count], size[:count]
+
+
+@njit(nogil=True, cache=True)
+def shrinking_words(linear):
+    """The words by which to enclose the attractor: a tight cover where that is short, else any cover.
+
+    Returns
+    -------
+    As `cover`, and the norm that the words of the cover do not exceed.
+    """
+    outcome, parent, letter, product, size = cover(linear, TIGHT_NORM, TIGHT_BUDGET)
+    if outcome != UNDECIDED:
+        return outcome, parent, letter, product, size, TIGHT_NORM
+    outcome, parent, letter, product, size = cover(linear, CONTRACTIVE_NORM, CONTRACTIVITY_BUDGET)
+    return outcome, parent, letter, product, size, CONTRACTIVE_NORM
+
+
+@njit(nogil=True, cache=True)
+def enclosing_disc(linear, translation, parent, letter, product, size, limit):
+    """A disc that holds the attractor, small but not always the smallest.
+
+    About any centre c the radius ``max |w(c) - c| / (1 - norm(w))`` over the words of a cover is enough. The centre
+    starts at the mean of the fixed points and steps towards the image that asks for the largest radius.
+
+    Parameters
+    ----------
+    linear, translation : (N, 4), (N, 2)
+    parent, letter, product, size, limit
+        From `shrinking_words`.
+
+    Returns
+    -------
+    x, y, radius : float
+    """
+    count = parent.shape[0]
+    shift = np.empty((count, 2))
+    for k in range(count):
+        e, f = translation[letter[k], 0], translation[letter[k], 1]
+        if parent[k] >= 0:
+            m = product[parent[k]]
+            shift[k, 0] = m[0] * e + m[1] * f + shift[parent[k], 0]
+            shift[k, 1] = m[2] * e + m[3] * f + shift[parent[k], 1]
+        else:
+            shift[k, 0], shift[k, 1] = e, f
+    x, y = 0.0, 0.0
+    for i in range(linear.shape[0]):
+        a, b, c, d = 1 - linear[i, 0], -linear[i, 1], -linear[i, 2], 1 - linear[i, 3]
+        det = a * d - b * c
+        x += (d * translation[i, 0] - b * translation[i, 1]) / det / linear.shape[0]
+        y += (a * translation[i, 1] - c * translation[i, 0]) / det / linear.shape[0]
+    best_x, best_y, best = x, y, np.inf
+    for step in range(12):
+        worst, worst_x, worst_y = 0.0, 0.0, 0.0
+        for k in range(count):
+            if size[k] <= limit:
+                dx = product[k, 0] * x + product[k, 1] * y + shift[k, 0] - x
+                dy = product[k, 2] * x + product[k, 3] * y + shift[k, 1] - y
+                radius = math.sqrt(dx * dx + dy * dy) / (1 - size[k])
+                if radius > worst:
+                    worst, worst_x, worst_y = radius, dx / (1 - size[k]), dy / (1 - size[k])
+        if worst < best:
+            best_x, best_y, best = x, y, worst
+        x += worst_x / (step + 3)
+        y += worst_y / (step + 3)
+    return best_x, best_y, best * (1 + 1e-12)
+
+
+@njit(nogil=True, cache=True)
+def outer_polygon(linear, translation, radius, directions, tolerance):
+    """A polygon that holds the attractor: for each of evenly spaced directions, how far it can reach.
+
+    Starts at the disc about the origin and applies ``K <- K n outer(U w_i K)``; it is an enclosure at every step.
+
+    Parameters
+    ----------
+    linear, translation : (N, 4), (N, 2)
+    radius : float
+        Of a disc about the origin that holds the attractor.
+    directions : int
+        How many; direction k is at the angle 2 pi k / directions.
+    tolerance : float
+        Stop when no reach changes by more than this.
+
+    Returns
+    -------
+    reach : (directions,)
+        The largest ``<x, direction>``.
+    corners : (directions, 2)
+        Between direction k and k + 1; their hull holds the attractor.
+    """
+    cos, sin = np.empty(directions), np.empty(directions)
+    for k in range(directions):
+        cos[k], sin[k] = math.cos(2 * math.pi * k / directions), math.sin(2 * math.pi * k / directions)
+    reach = np.full(directions, radius)
+    following = np.empty(directions)
+    corners = np.empty((directions, 2))
+    across = cos[0] * sin[1] - sin[0] * cos[1]
+    for _ in range(100):
+        for k in range(directions):
+            n = (k + 1) % directions
+            corners[k, 0] = (reach[k] * sin[n] - reach[n] * sin[k]) / across
+            corners[k, 1] = (reach[n] * cos[k] - reach[k] * cos[n]) / across
+        change = 0.0
+        for k in range(directions):
+            furthest = -np.inf
+            for i in range(linear.shape[0]):
+                p = linear[i, 0] * cos[k] + linear[i, 2] * sin[k]
+                q = linear[i, 1] * cos[k] + linear[i, 3] * sin[k]
+                within = -np.inf
+                for corner in range(directions):
+                    within = max(within, p * corners[corner, 0] + q * corners[corner, 1])
+                furthest = max(furthest, within + translation[i, 0] * cos[k] + translation[i, 1] * sin[k])
+            following[k] = min(reach[k], furthest + 1e-14 * radius)
+            change = max(change, reach[k] - following[k])
+        reach[:] = following
+        if change <= tolerance:
+            break
+    for k in range(directions):
+        n = (k + 1) % directions
+        corners[k, 0] = (reach[k] * sin[n] - reach[n] * sin[k]) / across
+        corners[k, 1] = (reach[n] * cos[k] - reach[k] * cos[n]) / across
+    return reach, corners

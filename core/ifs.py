@@ -1,0 +1,203 @@
+"""The iterated function system: its maps and weights, whether it has an attractor, and where that lies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+from functools import cached_property
+
+import numpy as np
+
+from .affine import determinant, singular_values, spectral_radius
+from .enclosure import enclosing_disc, outer_polygon, shrinking_words
+
+WEIGHT_FLOOR = 0.01
+"""Least default weight of a map as a share of all areas, so that a flat map is drawn too."""
+
+BOUNDS_DIRECTIONS = 64
+
+
+class IFSError(ValueError):
+    """Something a person gave is not an IFS that can be used; the message says what, where and what to do."""
+
+
+class Contractivity(IntEnum):
+    """Whether an IFS has an attractor."""
+
+    CONTRACTIVE = 0
+    NO_ATTRACTOR = 1
+    UNDECIDED = 2
+
+
+@dataclass(frozen=True, eq=False)
+class IFS:
+    """An iterated function system ``{w_i}``, ``w_i(x) = L_i x + t_i`` (Burch & Hart 1997, Section 1).
+
+    Parameters
+    ----------
+    maps : (N, 2, 3)
+        ``[[a, b, e], [c, d, f]]`` each, N >= 1.
+    weights : (N,), optional
+        How often each map is used where a measure is drawn, scaled to the sum 1. By default the areas ``|det L_i|``,
+        none below a hundredth of their sum.
+    name : str
+        What to call it in a message or a menu.
+
+    Raises
+    ------
+    IFSError
+        If the arrays have another shape, hold NaN or infinity, or a weight is negative. Maps that do not contract
+        are accepted, since a morph may pass through them: see `contractivity`.
+    """
+
+    maps: np.ndarray
+    weights: np.ndarray | None = None
+    name: str = field(default="")
+
+    def __post_init__(self) -> None:
+        maps = _numbers(self.maps, f"{self._called} maps")
+        if maps.ndim != 3 or maps.shape[1:] != (2, 3):
+            raise IFSError(
+                f"{self._called} maps have the shape {maps.shape}; (N, 2, 3) is needed, [[a, b, e], [c, d, f]] each."
+            )
+        if len(maps) == 0:
+            raise IFSError(f"{self._called} has no maps; add at least one.")
+        _require_finite(maps, f"{self._called} map", "a, b, c, d, e and f")
+        areas = np.abs(determinant(maps[:, :, :2]))
+        if self.weights is None:
+            total = areas.sum()
+            weights = np.maximum(areas, WEIGHT_FLOOR * total) if total > 0 else np.ones(len(maps))
+        else:
+            weights = _numbers(self.weights, f"{self._called} weights")
+            if weights.shape != (len(maps),):
+                raise IFSError(
+                    f"{self._called} has {len(maps)} maps but weights of shape {weights.shape}; give one weight a map."
+                )
+            _require_finite(weights, f"{self._called} weight of map", "the weight")
+            for i in np.flatnonzero(weights < 0):
+                raise IFSError(f"{self._called} weight of map {i + 1} is {weights[i]:g}; use zero or more.")
+            if weights.sum() == 0:
+                raise IFSError(f"{self._called} weights are all zero; give at least one map a weight.")
+        weights = weights / weights.sum()
+        maps.flags.writeable = weights.flags.writeable = False
+        object.__setattr__(self, "maps", maps)
+        object.__setattr__(self, "weights", weights)
+
+    @property
+    def _called(self) -> str:
+        return f"The IFS “{self.name}”:" if self.name else "The IFS:"
+
+    @property
+    def count(self) -> int:
+        """N, the number of maps."""
+        return len(self.maps)
+
+    @property
+    def linear(self) -> np.ndarray:
+        """Linear parts (N, 2, 2)."""
+        return self.maps[:, :, :2]
+
+    @property
+    def translation(self) -> np.ndarray:
+        """Translations (N, 2)."""
+        return self.maps[:, :, 2]
+
+    @cached_property
+    def norms(self) -> np.ndarray:
+        """Lipschitz constants (N,) of the maps."""
+        return singular_values(self.linear)[:, 0]
+
+    @cached_property
+    def _words(self) -> tuple:
+        return shrinking_words(np.ascontiguousarray(self.linear).reshape(-1, 4))
+
+    @property
+    def contractivity(self) -> Contractivity:
+        """Whether the maps contract, decided by words: one norm above 1 does not rule an attractor out."""
+        return Contractivity(self._words[0])
+
+    def require_attractor(self) -> None:
+        """Raise IFSError, naming the map and its norm, unless the IFS is known to have an attractor."""
+        if self.contractivity == Contractivity.CONTRACTIVE:
+            return
+        radii = spectral_radius(self.linear)
+        worst = int(np.argmax(radii))
+        if radii[worst] >= 1 - 1e-9:
+            raise IFSError(
+                f"{self._called} map {worst + 1} does not contract: its norm is {self.norms[worst]:.4g} and it scales by "
+                f"{radii[worst]:.4g} along one direction; scale it below 1."
+            )
+        worst = int(np.argmax(self.norms))
+        found = (
+            "applied in turn with the others it grows without end"
+            if self.contractivity == Contractivity.NO_ATTRACTOR
+            else "it could not be shown that the maps contract together"
+        )
+        raise IFSError(
+            f"{self._called} map {worst + 1} has the norm {self.norms[worst]:.4g} and {found}; scale it below 1."
+        )
+
+    @cached_property
+    def enclosing_disc(self) -> tuple[np.ndarray, float]:
+        """Centre (2,) and radius of a disc that is certain to hold the attractor.
+
+        Raises
+        ------
+        IFSError
+            If there is no attractor.
+        """
+        self.require_attractor()
+        linear = np.ascontiguousarray(self.linear).reshape(-1, 4)
+        _, *words = self._words
+        x, y, radius = enclosing_disc(linear, np.ascontiguousarray(self.translation), *words)
+        return np.array([x, y]), radius
+
+    @property
+    def fixed_points(self) -> np.ndarray:
+        """Fixed points (N, 2) of the maps; all lie on the attractor.
+
+        Raises
+        ------
+        IFSError
+            If there is no attractor.
+        """
+        self.require_attractor()
+        return np.linalg.solve(np.eye(2) - self.linear, self.translation[..., None])[..., 0]
+
+    @cached_property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Least x, least y, largest x, largest y of a box that is certain to hold the attractor, and close to it.
+
+        Raises
+        ------
+        IFSError
+            If there is no attractor.
+        """
+        center, radius = self.enclosing_disc
+        if radius == 0:
+            return (*center, *center)
+        translation = self.translation + self.linear @ center - center
+        linear = np.ascontiguousarray(self.linear).reshape(-1, 4)
+        reach, _ = outer_polygon(linear, translation, radius, BOUNDS_DIRECTIONS, 1e-6 * radius)
+        quarter = BOUNDS_DIRECTIONS // 4
+        right, top, left, bottom = reach[::quarter]
+        return (
+            float(center[0] - left),
+            float(center[1] - bottom),
+            float(center[0] + right),
+            float(center[1] + top),
+        )
+
+
+def _numbers(values: np.ndarray, what: str) -> np.ndarray:
+    try:
+        return np.array(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise IFSError(f"{what} are not an array of numbers of one shape.") from error
+
+
+def _require_finite(values: np.ndarray, what: str, which: str) -> None:
+    """Name the first entry along the first axis that holds NaN or infinity."""
+    broken = ~np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+    if broken.any():
+        raise IFSError(f"{what} {int(np.argmax(broken)) + 1} holds NaN or infinity; {which} must be finite numbers.")
