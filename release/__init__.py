@@ -1,0 +1,1 @@
+"""Builds the extension's zips: ``python -m release``, or ``make package``."""
