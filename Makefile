@@ -5,8 +5,8 @@ SCENE =
 FRAMES =
 SIZE =
 
-# The uv on PATH, if it runs; else one of our own, which keeps its Pythons and downloads to itself.
-UV := $(shell uv --version >/dev/null 2>&1 && echo uv || echo .tools/bin/uv)
+# The uv on PATH, if it runs and is new enough; else one of our own, which keeps its Pythons and downloads to itself.
+UV := $(shell uv run --no-default-groups --help >/dev/null 2>&1 && echo uv || echo .tools/bin/uv)
 OWN_UV := $(filter-out uv,$(UV))
 ifneq ($(OWN_UV),)
 export UV_PYTHON_INSTALL_DIR = $(CURDIR)/.tools/python
