@@ -76,6 +76,4 @@ def _problems_of_wheels(names: list[str], platform: str | None) -> list[str]:
             missing.remove(match.groups())
         else:
             found.append(f"{name} does not belong in the zip for {platform}")
-    return found + [
-        f"there is no wheel of {package} for {python} on {platform}" for package, python in missing
-    ]
+    return found + [f"there is no wheel of {package} for {python} on {platform}" for package, python in missing]

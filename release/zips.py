@@ -1,17 +1,17 @@
 """Builds one zip of the extension with Blender's own tool, which the ``bpy`` module carries.
 
-The tool's ``--split-platforms`` silently drops wheels that it cannot place. So each zip is built from a
-staged copy of its own, whose manifest names the platform, the wheels and every file. Equal sources make equal
-zips: the list of files is sorted, and times and permissions are the same everywhere.
+The tool's ``--split-platforms`` silently drops wheels that it cannot place. So each zip is built from a staged
+copy of its own, whose manifest names just its platform and its wheels. Equal sources make equal zips.
 """
 
 import importlib.util
-import os
+import json
 import shutil
 import subprocess
 import sys
 import tempfile
 import tomllib
+import zipfile
 from pathlib import Path
 
 from .wheels import ROOT, download
@@ -19,7 +19,6 @@ from .wheels import ROOT, download
 OUTPUT = ROOT / "out" / "packages"
 MANIFEST = "blender_manifest.toml"
 CONTENTS = ("__init__.py", "LICENSE", "README.md", "core", "ifs_morph_addon")
-TIME_STAMP = 946684800  # the start of the year 2000
 
 
 def manifest() -> dict:
@@ -49,7 +48,8 @@ def build(platform: str | None, output: Path = OUTPUT) -> Path:
     with tempfile.TemporaryDirectory(dir=output, prefix=".stage-") as folder:
         stage = Path(folder)
         _stage(stage, platform)
-        blender_tool("build", "--source-dir", stage, "--output-filepath", package)
+        blender_tool("build", "--source-dir", stage, "--output-filepath", stage / package.name)
+        _write_in_order(stage / package.name, package)
     blender_tool("validate", package, "--valid-tags", _scripts() / "modules/_bpy_internal/extensions/tags.py")
     return package
 
@@ -63,9 +63,7 @@ def blender_tool(*arguments) -> None:
         The tool failed; the message is what it printed.
     """
     tool = _scripts() / "addons_core/bl_pkg/cli/blender_ext.py"
-    environment = {**os.environ, "TZ": "UTC"}  # a zip holds local times
-    command = [sys.executable, tool, *arguments]
-    result = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    result = subprocess.run([sys.executable, tool, *arguments], capture_output=True, text=True, check=False)
     if result.returncode != 0:
         raise RuntimeError(f"Blender refuses to {arguments[0]}:\n{result.stdout}{result.stderr}")
 
@@ -83,24 +81,22 @@ def _stage(stage: Path, platform: str | None) -> None:
         else:
             shutil.copy(ROOT / name, stage)
 
+    text = (ROOT / MANIFEST).read_text(encoding="utf-8")
     if platform is not None:
         (stage / "wheels").mkdir()
         for wheel in download(platform):
             shutil.copy(wheel, stage / "wheels")
-
-    files = {path.relative_to(stage).as_posix() for path in stage.rglob("*") if path.is_file()}
-    wheels = {path for path in files if path.startswith("wheels/")}
-    text = (ROOT / MANIFEST).read_text(encoding="utf-8")
-    if platform is not None:
-        text = f"platforms = {_toml({platform})}\nwheels = {_toml(wheels)}\n\n{text}"
-    # Blender's tool adds the manifest and the wheels to the paths by itself.
-    text = f"{text}\n[build]\npaths = {_toml(files - wheels)}\n"
+        wheels = sorted(f"wheels/{path.name}" for path in (stage / "wheels").iterdir())
+        # Ahead of the manifest's own text, which ends in a table; a list of names reads the same in JSON and TOML.
+        text = f"platforms = {json.dumps([platform])}\nwheels = {json.dumps(wheels, indent=4)}\n\n{text}"
     (stage / MANIFEST).write_text(text, encoding="utf-8")
 
-    for path in stage.rglob("*"):
-        path.chmod(0o755 if path.is_dir() else 0o644)
-        os.utime(path, (TIME_STAMP, TIME_STAMP))
 
-
-def _toml(items: set[str]) -> str:
-    return "[\n" + "".join(f'    "{item}",\n' for item in sorted(items)) + "]"
+def _write_in_order(source: Path, target: Path) -> None:
+    """Copy a zip without what depends on the machine: the order, the times and the permissions of its files."""
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
+        for entry in sorted(old.infolist(), key=lambda entry: entry.filename):
+            plain = zipfile.ZipInfo(entry.filename)
+            plain.compress_type = entry.compress_type
+            plain.external_attr = 0o644 << 16
+            new.writestr(plain, old.read(entry))
