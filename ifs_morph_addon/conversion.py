@@ -1,0 +1,164 @@
+"""Properties to core objects and back; the only place that knows both.
+
+What was built from equal properties is kept, so that a frame costs no more than its own attractor.
+"""
+
+import hashlib
+from functools import lru_cache
+
+import numpy as np
+
+from ..core.affine import from_parameters, to_parameters
+from ..core.ifs import IFS, IFSError
+from ..core.morph import SCHEMES, Morph
+from ..core.raster import fit_window as fitted_window
+from ..core.shading import attractorlet_colors
+from . import fcurves
+
+FIT_SAMPLES = 33
+"""Places along the path whose attractors the window must hold."""
+
+
+def identifier(name: str) -> str:
+    """Blender's identifier of an enumeration item that core knows by a lower-case name."""
+    return name.upper().replace("-", "_").replace(" ", "_")
+
+
+def core_name(item: str, names: tuple[str, ...]) -> str:
+    """Core's name of an enumeration item: the inverse of `identifier`."""
+    return next(name for name in names if identifier(name) == item)
+
+
+def shape_maps(shape) -> np.ndarray:
+    """Maps (N, 2, 3) of a shape."""
+    flat = np.empty(6 * len(shape.maps), dtype=np.float32)
+    shape.maps.foreach_get("matrix", flat)
+    return flat.reshape(-1, 2, 3).astype(float)
+
+
+def shape_colors(shape) -> np.ndarray:
+    """Colors (N, 3) of a shape's maps."""
+    flat = np.empty(3 * len(shape.maps), dtype=np.float32)
+    shape.maps.foreach_get("color", flat)
+    return flat.reshape(-1, 3)
+
+
+def frame_colors(settings) -> np.ndarray:
+    """Color and alpha (N, 4) of each attractorlet at the settings' u, between those of the two shapes."""
+    start, end = shape_colors(settings.initial), shape_colors(settings.final)
+    share = np.float32(min(max(settings.uv[0], 0.0), 1.0))
+    colors = np.ones((len(start), 4), dtype=np.float32)
+    colors[:, :3] = (1 - share) * start + share * end
+    return colors
+
+
+def shape_ifs(shape) -> IFS:
+    """A shape as an IFS; raises IFSError."""
+    weights = np.empty(len(shape.maps), dtype=np.float32)
+    shape.maps.foreach_get("weight", weights)
+    return _ifs(shape_maps(shape).tobytes(), weights.tobytes(), shape.name)
+
+
+@lru_cache(maxsize=64)
+def _ifs(maps: bytes, weights: bytes, name: str) -> IFS:
+    weights = np.frombuffer(weights, dtype=np.float32).astype(float)
+    ifs = IFS(np.frombuffer(maps).reshape(-1, 2, 3), name=name)
+    if not weights.any():
+        return ifs
+    # A weight of zero stands for the share that the map has by default.
+    return IFS(ifs.maps, np.where(weights == 0, ifs.weights, weights), name)
+
+
+def morph_of(settings) -> Morph:
+    """The morph between an object's two shapes; raises IFSError."""
+    winding = np.zeros(len(settings.final.maps), dtype=np.int32)
+    settings.final.maps.foreach_get("winding", winding)
+    return _morph(shape_ifs(settings.initial), shape_ifs(settings.final), settings.scheme, winding.tobytes())
+
+
+@lru_cache(maxsize=16)
+def _morph(initial: IFS, final: IFS, scheme: str, winding: bytes) -> Morph:
+    return Morph(initial, final, core_name(scheme, SCHEMES), np.frombuffer(winding, dtype=np.int32))
+
+
+def tolerance(settings) -> float:
+    """Gaps below this share of the attractor's enclosing diameter count as none."""
+    return 1 / settings.gap_resolution
+
+
+def fingerprint(settings, *more) -> str:
+    """Short text that changes with the morph, the tolerance and `more`; tells whether a result is out of date."""
+    digest = hashlib.sha1(usedforsecurity=False)
+    for shape in (settings.initial, settings.final):
+        digest.update(shape_maps(shape).tobytes())
+    winding = [item.winding for item in settings.final.maps]
+    digest.update(repr((settings.scheme, winding, settings.gap_resolution, more)).encode())
+    return digest.hexdigest()[:16]
+
+
+def locus_fingerprint(settings) -> str:
+    """Fingerprint of what the locus depends on."""
+    return fingerprint(settings, settings.locus.resolution, tuple(settings.locus.domain))
+
+
+def path_fingerprint(settings) -> str:
+    """Fingerprint of what the report on a path depends on, apart from its keys."""
+    return fingerprint(settings)
+
+
+def write_shape(shape, ifs: IFS) -> None:
+    """Fill a shape with the maps of an IFS, its weights left to the areas of the maps where they are just that."""
+    by_area = np.allclose(IFS(ifs.maps).weights, ifs.weights)
+    shape.maps.clear()
+    for k, color in enumerate(attractorlet_colors(ifs.count)):
+        item = shape.maps.add()
+        item.name = f"Map {k + 1}"
+        item.color = color[:3]
+        item.weight = 0.0 if by_area else float(ifs.weights[k])
+    shape.maps.foreach_set("matrix", ifs.maps.astype(np.float32).ravel())
+    shape.name = ifs.name
+    shape.active_index = 0
+
+
+def map_parameters(item) -> np.ndarray:
+    """Rotation, scale x, scale y, shear, and the two of the translation of one map."""
+    return to_parameters(np.array(item.matrix))
+
+
+def set_map_parameters(item, parameters) -> None:
+    """Set a map's matrix from the numbers of `map_parameters`."""
+    item.matrix = from_parameters(parameters)
+
+
+def path_samples(owner, count: int = FIT_SAMPLES) -> np.ndarray:
+    """u, v and swell (F, 3) along the keyed path, or along the straight one where none is keyed."""
+    if fcurves.has_path(owner):
+        frames = fcurves.key_frames(owner)
+        return fcurves.sample_path(owner, np.linspace(frames[0], frames[-1], count))
+    along = np.linspace(0, 1, count)
+    return np.stack([along, along, 0 * along], axis=1)
+
+
+def fit_window(owner) -> None:
+    """Fit the window of an object to all shapes of its morph, if it is to be fitted and there are any."""
+    settings = owner.ifs_morph
+    output = settings.output
+    if settings.kind == "NONE" or not output.fit_window:
+        return
+    try:
+        morph = morph_of(settings)
+        shapes = [morph.at(*place) for place in path_samples(owner)]
+        output.window = fitted_window(shapes, tuple(output.resolution))
+    except IFSError:
+        return  # The panel shows what is wrong; the last window will do until it is mended.
+
+
+def shape_problem(settings) -> str:
+    """What keeps an object's shapes from being morphed, in one sentence; empty if nothing does."""
+    try:
+        morph = morph_of(settings)
+        morph.initial.require_attractor()
+        morph.final.require_attractor()
+    except IFSError as error:
+        return str(error)
+    return ""

@@ -1,0 +1,17 @@
+"""What an animator does: one file for one subject."""
+
+from . import add, locus, maps, output, path, shapes
+
+MODULES = (add, shapes, maps, locus, path, output)
+
+
+def register():
+    """Register the operators."""
+    for module in MODULES:
+        module.register()
+
+
+def unregister():
+    """Unregister the operators."""
+    for module in reversed(MODULES):
+        module.unregister()

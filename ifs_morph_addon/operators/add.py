@@ -1,0 +1,123 @@
+"""Add a morph object that can be seen and rendered at once."""
+
+import math
+
+import bpy
+
+from ...core.shapes import SHAPES
+from .. import outputs
+from ..conversion import fit_window, write_shape
+
+DEFAULT_MORPH = ("turned gasket", "gasket")
+
+CAMERA_MARGIN = 1.15
+
+
+class IFSMORPH_OT_add(bpy.types.Operator):
+    """Add an object that shows one fractal becoming another"""
+
+    bl_idname = "object.ifs_morph_add"
+    bl_label = "Add IFS Morph"
+    bl_options = {"REGISTER", "UNDO"}
+
+    kind: bpy.props.EnumProperty(
+        name="Kind",
+        description="What shows the fractal",
+        items=(
+            ("IMAGE", "Image Plane", "A plane with the fractal as its texture"),
+            ("POINTS", "Point Cloud", "A cloud of points of the fractal"),
+        ),
+    )
+    size: bpy.props.FloatProperty(
+        name="Size", description="Larger side of the fractal", subtype="DISTANCE", default=2.0, min=0.001
+    )
+    add_camera: bpy.props.BoolProperty(
+        name="Add Camera", description="Add a camera that frames the object if the scene has none", default=True
+    )
+    add_light: bpy.props.BoolProperty(
+        name="Add Light", description="Add a sun if points would be dark without", default=True
+    )
+
+    @classmethod
+    def poll(cls, context):
+        """Need object mode and a collection that may be changed."""
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Switch to Object Mode first")
+            return False
+        if context.scene.library is not None or context.collection.library is not None:
+            cls.poll_message_set("The active collection is linked from a library; choose another one")
+            return False
+        return True
+
+    def execute(self, context):
+        """Add the object, and a camera and a light where they are missing."""
+        name = f"IFS Morph {bpy.types.UILayout.enum_item_name(self, 'kind', self.kind)}"
+        output = outputs.KINDS[self.kind]
+        owner = bpy.data.objects.new(name, output.add_mesh(name))
+        settings = owner.ifs_morph
+        settings.kind = self.kind
+        for shape, source in zip((settings.initial, settings.final), DEFAULT_MORPH, strict=True):
+            write_shape(shape, SHAPES[source])
+        settings.path.frame_start, settings.path.frame_end = context.scene.frame_start, context.scene.frame_end
+        fit_window(owner)
+        self._place(context, owner)
+        context.collection.objects.link(owner)
+        output.ensure(owner)
+        for other in context.selected_objects:
+            other.select_set(False)
+        owner.select_set(True)
+        context.view_layer.objects.active = owner
+        # While Blender renders in the window, the viewport must not evaluate another frame into the same image.
+        context.scene.render.use_lock_interface = True
+        if self.add_camera and context.scene.camera is None:
+            self._frame(context, owner)
+        if self.add_light and self.kind == "POINTS" and not _is_lit(context.scene):
+            _light(context)
+        return {"FINISHED"}
+
+    def _place(self, context, owner):
+        """Stand the plane of the fractal upright, facing the front, its middle at the 3D cursor."""
+        low_x, low_y, high_x, high_y = owner.ifs_morph.output.window
+        scale = self.size / max(high_x - low_x, high_y - low_y)
+        middle = scale * (low_x + high_x) / 2, 0.0, scale * (low_y + high_y) / 2
+        owner.scale = (scale,) * 3
+        owner.rotation_euler = math.pi / 2, 0.0, 0.0
+        owner.location = [place - offset for place, offset in zip(context.scene.cursor.location, middle, strict=True)]
+
+    def _frame(self, context, owner):
+        """Add a camera in front of the fractal."""
+        camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+        render = context.scene.render
+        width = render.resolution_x * render.pixel_aspect_x
+        height = render.resolution_y * render.pixel_aspect_y
+        # A camera's angle spans the longer side of the picture.
+        reach = CAMERA_MARGIN * self.size / 2 * max(width, height) / min(width, height)
+        distance = reach / math.tan(camera.data.angle / 2)
+        place = context.scene.cursor.location
+        camera.location = place.x, place.y - distance, place.z
+        camera.rotation_euler = math.pi / 2, 0.0, 0.0
+        context.collection.objects.link(camera)
+        context.scene.camera = camera
+
+
+def _is_lit(scene):
+    return any(other.type == "LIGHT" for other in scene.objects)
+
+
+def _light(context):
+    sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    sun.data.energy = 3.0
+    sun.location = context.scene.cursor.location
+    sun.location.y -= 3.0
+    sun.rotation_euler = math.radians(60), 0.0, math.radians(-20)
+    context.collection.objects.link(sun)
+
+
+def register():
+    """Register the operator."""
+    bpy.utils.register_class(IFSMORPH_OT_add)
+
+
+def unregister():
+    """Unregister the operator."""
+    bpy.utils.unregister_class(IFSMORPH_OT_add)

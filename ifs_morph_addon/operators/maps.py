@@ -1,0 +1,113 @@
+"""Add, remove, duplicate and reorder the maps of a shape."""
+
+import bpy
+
+from ..conversion import fit_window
+from .poll import ENDS, editable_morph, shape_of
+
+STORED = ("name", "matrix", "weight", "color", "winding")
+"""What a map stores; the rest of its properties follows."""
+
+
+class _MapOperator:
+    bl_options = {"REGISTER", "UNDO"}
+
+    end: bpy.props.EnumProperty(name="End", description="Which shape to change", items=ENDS)
+
+    poll = classmethod(editable_morph)
+
+    def execute(self, context):
+        """Change the list of maps, and have the picture follow."""
+        shape = shape_of(self, context)
+        problem = self.change(shape)
+        if problem:
+            self.report({"ERROR"}, problem)
+            return {"CANCELLED"}
+        fit_window(context.object)
+        context.object.update_tag()
+        return {"FINISHED"}
+
+
+class IFSMORPH_OT_map_add(_MapOperator, bpy.types.Operator):
+    """Add a map to the shape: its whole at half its size"""
+
+    bl_idname = "ifs_morph.map_add"
+    bl_label = "Add Map"
+
+    def change(self, shape):
+        """Append a map and make it the active one."""
+        item = shape.maps.add()
+        item.name = f"Map {len(shape.maps)}"
+        shape.active_index = len(shape.maps) - 1
+
+
+class IFSMORPH_OT_map_remove(_MapOperator, bpy.types.Operator):
+    """Remove the active map from the shape"""
+
+    bl_idname = "ifs_morph.map_remove"
+    bl_label = "Remove Map"
+
+    def change(self, shape):
+        """Remove the active map; the one after it becomes active."""
+        if not 0 <= shape.active_index < len(shape.maps):
+            return "There is no active map to remove."
+        shape.maps.remove(shape.active_index)
+        shape.active_index = max(0, min(shape.active_index, len(shape.maps) - 1))
+        return None
+
+
+class IFSMORPH_OT_map_duplicate(_MapOperator, bpy.types.Operator):
+    """Duplicate the active map"""
+
+    bl_idname = "ifs_morph.map_duplicate"
+    bl_label = "Duplicate Map"
+
+    def change(self, shape):
+        """Put a copy after the active map and make it the active one."""
+        index = shape.active_index
+        if not 0 <= index < len(shape.maps):
+            return "There is no active map to duplicate."
+        copy, source = shape.maps.add(), shape.maps[index]
+        for name in STORED:
+            setattr(copy, name, getattr(source, name))
+        shape.maps.move(len(shape.maps) - 1, index + 1)
+        shape.active_index = index + 1
+        return None
+
+
+class IFSMORPH_OT_map_move(_MapOperator, bpy.types.Operator):
+    """Move the active map in the list; map k of the initial shape becomes map k of the final one"""
+
+    bl_idname = "ifs_morph.map_move"
+    bl_label = "Move Map"
+
+    direction: bpy.props.EnumProperty(
+        name="Direction",
+        description="Where to move the map",
+        items=(("UP", "Up", "Towards the start"), ("DOWN", "Down", "Towards the end")),
+    )
+
+    def change(self, shape):
+        """Swap the active map with its neighbor."""
+        index = shape.active_index
+        target = index + (-1 if self.direction == "UP" else 1)
+        if not (0 <= index < len(shape.maps) and 0 <= target < len(shape.maps)):
+            return "The map is at the end of the list already."
+        shape.maps.move(index, target)
+        shape.active_index = target
+        return None
+
+
+CLASSES = (IFSMORPH_OT_map_add, IFSMORPH_OT_map_remove, IFSMORPH_OT_map_duplicate, IFSMORPH_OT_map_move)
+
+
+def register():
+    """Register the operators."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    """Unregister the operators."""
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

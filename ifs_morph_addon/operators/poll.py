@@ -1,0 +1,37 @@
+"""When an operator can work on the active object; greyed-out buttons show the reason otherwise."""
+
+from ..conversion import shape_problem
+
+
+def editable_morph(cls, context) -> bool:
+    """Whether the active object is a morph that may be changed."""
+    owner = context.object
+    if owner is None or owner.ifs_morph.kind == "NONE":
+        cls.poll_message_set("Select an IFS Morph object, or add one with Add > IFS Morph")
+        return False
+    if owner.library is not None or (owner.override_library and owner.override_library.is_system_override):
+        cls.poll_message_set("The object is linked from a library; make it local or an editable library override first")
+        return False
+    return True
+
+
+def sound_morph(cls, context) -> bool:
+    """Whether the active object is a morph that may be changed and whose shapes fit each other."""
+    if not editable_morph(cls, context):
+        return False
+    problem = shape_problem(context.object.ifs_morph)
+    if problem:
+        cls.poll_message_set(problem)
+    return not problem
+
+
+def shape_of(operator, context):
+    """Return the shape that an operator's `end` names."""
+    settings = context.object.ifs_morph
+    return settings.initial if operator.end == "INITIAL" else settings.final
+
+
+ENDS = (
+    ("INITIAL", "Initial", "The shape at the start of the morph"),
+    ("FINAL", "Final", "The shape at the end of the morph"),
+)

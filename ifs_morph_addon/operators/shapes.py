@@ -1,0 +1,41 @@
+"""Load a shape of the library as the initial or the final one."""
+
+import bpy
+
+from ...core.shapes import SHAPES
+from ..conversion import fit_window, write_shape
+from .poll import ENDS, editable_morph, shape_of
+
+
+class IFSMORPH_OT_load_shape(bpy.types.Operator):
+    """Replace the maps of this shape by those of a shape from the library"""
+
+    bl_idname = "ifs_morph.load_shape"
+    bl_label = "Load Shape"
+    bl_options = {"REGISTER", "UNDO"}
+
+    end: bpy.props.EnumProperty(name="End", description="Which shape to replace", items=ENDS)
+    shape: bpy.props.StringProperty(name="Shape", description="Name of a shape in the library", default="gasket")
+
+    poll = classmethod(editable_morph)
+
+    def execute(self, context):
+        """Replace the maps."""
+        if self.shape not in SHAPES:
+            names = ", ".join(SHAPES)
+            self.report({"ERROR"}, f"The library has no shape “{self.shape}”; it has {names}.")
+            return {"CANCELLED"}
+        write_shape(shape_of(self, context), SHAPES[self.shape])
+        fit_window(context.object)
+        context.object.update_tag()
+        return {"FINISHED"}
+
+
+def register():
+    """Register the operator."""
+    bpy.utils.register_class(IFSMORPH_OT_load_shape)
+
+
+def unregister():
+    """Unregister the operator."""
+    bpy.utils.unregister_class(IFSMORPH_OT_load_shape)

@@ -1,0 +1,160 @@
+"""The attractor as an image on a plane."""
+
+import bpy
+import numpy as np
+
+from ...core import raster, shading
+from .. import compat
+from ..conversion import frame_colors
+from . import materials
+
+OWN_DATA = ("image", "spare_image", "material", "ramp")
+"""Datablocks of the output settings that no two objects may share."""
+
+
+def add_mesh(name: str):
+    """Make the plane's mesh; `draw` gives it the size of the window."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
+    mesh.uv_layers.new().data.foreach_set("uv", np.float32([0, 0, 1, 0, 1, 1, 0, 1]))
+    return mesh
+
+
+def ensure(owner) -> None:
+    """Make the datablocks that are missing, be it because the object is new or because somebody deleted them."""
+    output = owner.ifs_morph.output
+    complete = output.image and output.ramp and output.material and (output.spare_image or compat.NOTICES_IMAGES)
+    if complete:
+        return
+    output.image = output.image or _new_image(owner)
+    if not compat.NOTICES_IMAGES:
+        output.spare_image = output.spare_image or _new_image(owner)
+    output.ramp = output.ramp or _new_ramp(owner)
+    output.material = output.material or materials.image_material(owner.name)
+    connect(owner)
+
+
+def repair(owner) -> None:
+    """Give the object a new material if its own no longer shows the image."""
+    output = owner.ifs_morph.output
+    before = output.material
+    if materials.image_node(before) is None:
+        output.material = materials.image_material(owner.name)
+    materials.fill_slot(owner, output.material, instead_of=before)
+    connect(owner)
+
+
+def _new_image(owner):
+    width, height = owner.ifs_morph.output.resolution
+    image = bpy.data.images.new(owner.name, width, height, alpha=True, float_buffer=True)
+    # Pixels hold color times alpha, the only kind that all versions filter and show alike.
+    image.alpha_mode = "PREMUL"
+    return image
+
+
+def _new_ramp(owner):
+    texture = bpy.data.textures.new(f"{owner.name} Color Ramp", "BLEND")
+    texture.use_color_ramp = True
+    elements = texture.color_ramp.elements
+    for element, (position, color) in zip(elements, shading.PALETTES["fire"], strict=False):
+        element.position, element.color = position, color
+    return texture
+
+
+def part(owner, name: str, datablock) -> None:
+    """Replace a datablock that another object has too by a copy."""
+    copy = datablock.copy()
+    setattr(owner.ifs_morph.output, name, copy)
+    if name == "material":
+        materials.fill_slot(owner, copy, instead_of=datablock)
+
+
+def connect(owner) -> None:
+    """Have the material show the image, and the object the material."""
+    output = owner.ifs_morph.output
+    materials.fill_slot(owner, output.material)
+    materials.set_image(output.material, output.image)
+
+
+def target(owner):
+    """Datablock that the attractor goes into, or None if it is missing."""
+    return owner.ifs_morph.output.image
+
+
+def signature(owner, settings, morph, frame) -> tuple:
+    """All that the picture depends on."""
+    output = settings.output
+    look = {
+        "SET": lambda: tuple(output.color),
+        "DENSITY": lambda: (output.curve, output.exposure, output.gamma, _ramp(owner).tobytes()),
+        "ATTRACTORLET": lambda: frame_colors(settings).tobytes(),
+    }[output.mode]()
+    return (
+        frame and (frame.maps.tobytes(), frame.weights.tobytes()),
+        output.mode,
+        tuple(output.resolution),
+        output.antialiasing,
+        tuple(output.window),
+        tuple(output.background),
+        look,
+    )
+
+
+def draw(owner, settings, morph, frame, for_render: bool):
+    """Render the attractor, or none, into the image; the image that shows it."""
+    output = settings.output
+    pixels = _picture(owner, settings, morph, frame)
+    image = _image_for(owner, for_render)
+    width, height = output.resolution
+    if tuple(image.size) != (width, height):
+        image.generated_width, image.generated_height = width, height
+    image.pixels.foreach_set(pixels.ravel())
+    image.update()
+    image.update_tag()
+    _fit_plane(owner.data, output.window)
+    return image
+
+
+def _picture(owner, settings, morph, frame) -> np.ndarray:
+    """Color times alpha, and alpha, of each pixel: float32 (H, W, 4), row 0 at the bottom."""
+    output = settings.output
+    width, height = output.resolution
+    if frame is None:
+        return np.zeros((height, width, 4), dtype=np.float32)
+    image = raster.render(frame, (width, height), tuple(output.window), output.mode.lower())
+    result = np.zeros((height, width, 4), dtype=np.float32)
+    if output.mode == "ATTRACTORLET":
+        result = np.concatenate([np.zeros((1, 4), np.float32), frame_colors(settings)])[image]
+    else:
+        result[:] = (image > 0)[..., None] * np.float32(output.color)
+    result[..., :3] *= result[..., 3:]
+    return result
+
+
+def _ramp(owner) -> np.ndarray:
+    """Colors (256, 4) of the object's ramp, from thin to dense."""
+    ramp = owner.ifs_morph.output.ramp.color_ramp
+    return np.array([ramp.evaluate(k / 255) for k in range(256)], dtype=np.float32)
+
+
+def _image_for(owner, for_render: bool):
+    """Image to render into: the one that shows, or the spare one where a render would not notice new pixels."""
+    output = owner.ifs_morph.output
+    if for_render and output.spare_image is not None and not compat.NOTICES_IMAGES:
+        output.image, output.spare_image = output.spare_image, output.image
+        materials.set_image(output.material, output.image)
+    return output.image
+
+
+def _fit_plane(mesh, window) -> None:
+    """Put the plane's corners where the window's are, if they are not there already."""
+    if len(mesh.vertices) != 4:
+        return  # Somebody shaped the mesh; the image then lies on it by its UV map.
+    left, bottom, right, top = window
+    corners = np.float32([(left, bottom, 0), (right, bottom, 0), (right, top, 0), (left, top, 0)])
+    before = np.empty(12, dtype=np.float32)
+    mesh.vertices.foreach_get("co", before)
+    if not np.array_equal(before, corners.ravel()):
+        mesh.vertices.foreach_set("co", corners.ravel())
+        mesh.update()
+        mesh.update_tag()

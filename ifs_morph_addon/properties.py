@@ -1,0 +1,487 @@
+"""What is stored on an object: the two shapes, the morph between them, and how it is computed and shown.
+
+Properties hold data and nothing else. Those that make sense on an F-curve are animatable, the others are not, so that
+a picture's window or an attractor's number of maps never changes with the frame.
+"""
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    IntVectorProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from . import conversion
+from .conversion import identifier
+
+LEAF = {"LIBRARY_OVERRIDABLE"}
+LIST = {"LIBRARY_OVERRIDABLE", "USE_INSERTION"}
+STILL: set[str] = set()
+"""Options of a property that has no F-curve."""
+
+SCHEMES = {
+    "elementwise": ("Elementwise", "Interpolate the matrices entry by entry; maps that turn become flat on the way"),
+    "polar": ("Polar", "Turn by the angle and interpolate the stretch, so that shapes keep their size as they turn"),
+    "log-polar": ("Log-Polar", "As Polar, with the stretch interpolated by ratios; needs maps that are not flat"),
+}
+METHODS = {
+    "planned": ("Planned", "Find a way through the connectedness locus, and swell only where there is none"),
+    "straight": ("Straight", "Go straight from the initial to the final shape and swell where it would break"),
+    "straight unswollen": ("Straight, Unswollen", "Go straight and let the shape break"),
+}
+
+
+def redraw(self, context):
+    """Have Blender evaluate the object again, which renders its output again; Python alone would not."""
+    self.id_data.update_tag()
+
+
+def refit(self, context):
+    """The family of attractors has changed: fit the window to it, where the window is to be fitted."""
+    conversion.fit_window(self.id_data)
+    redraw(self, context)
+
+
+def _choices(texts):
+    return [(identifier(name), *text) for name, text in texts.items()]
+
+
+def _parameter(first, last=None):
+    """Getter and setter of one or more of the numbers into which core takes a map apart."""
+    wanted = slice(first, last) if last else first
+
+    def get(self):
+        return conversion.map_parameters(self)[wanted]
+
+    def set_(self, value):
+        parameters = conversion.map_parameters(self)
+        parameters[wanted] = value
+        conversion.set_map_parameters(self, parameters)
+
+    return {"get": get, "set": set_, "options": STILL}
+
+
+class IFSMorphMap(bpy.types.PropertyGroup):
+    """One affine map of a shape."""
+
+    name: StringProperty(name="Name", description="What to call the map in the list", options=STILL, override=LEAF)
+    matrix: FloatVectorProperty(
+        name="Matrix",
+        description="The map as a matrix: x' = a x + b y + e and y' = c x + d y + f",
+        size=(2, 3),
+        subtype="MATRIX",
+        default=((0.5, 0.0, 0.0), (0.0, 0.5, 0.0)),
+        precision=4,
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
+    weight: FloatProperty(
+        name="Weight",
+        description="Share of the points that this map gets; zero takes the share from the map's area",
+        default=0.0,
+        min=0.0,
+        soft_max=1.0,
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
+    color: FloatVectorProperty(
+        name="Color",
+        description="Color of this map's attractorlet",
+        subtype="COLOR",
+        size=3,
+        min=0.0,
+        soft_max=1.0,
+        default=(0.8, 0.8, 0.8),
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
+    winding: IntProperty(
+        name="Winding",
+        description="Whole turns that this map makes on its way from the initial shape, on top of the shorter way",
+        default=0,
+        soft_min=-3,
+        soft_max=3,
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
+    rotation: FloatProperty(
+        name="Rotation", description="Angle by which the map turns", subtype="ANGLE", **_parameter(0)
+    )
+    scale: FloatVectorProperty(
+        name="Scale",
+        description="Stretch of the map's axes; a negative Y reflects",
+        size=2,
+        subtype="XYZ",
+        precision=4,
+        step=1,
+        **_parameter(1, 3),
+    )
+    shear: FloatProperty(
+        name="Shear", description="How far the map's Y axis leans over", precision=4, step=1, **_parameter(3)
+    )
+    translation: FloatVectorProperty(
+        name="Location",
+        description="Where the map takes the origin",
+        size=2,
+        subtype="XYZ",
+        precision=4,
+        step=1,
+        **_parameter(4, 6),
+    )
+
+
+class IFSMorphShape(bpy.types.PropertyGroup):
+    """An iterated function system: the initial or the final shape."""
+
+    name: StringProperty(name="Name", description="What to call the shape in messages", options=STILL, override=LEAF)
+    maps: CollectionProperty(type=IFSMorphMap, name="Maps", override=LIST)
+    active_index: IntProperty(
+        name="Active Map", description="The map shown below the list", default=0, options=STILL, override=LEAF
+    )
+
+
+class IFSMorphLocusSettings(bpy.types.PropertyGroup):
+    """How the connectedness locus is computed, and its picture."""
+
+    resolution: IntProperty(
+        name="Resolution",
+        description="Nodes along a side of the locus; rounded so that 0 and 1 lie on nodes",
+        default=511,
+        min=16,
+        soft_max=1021,
+        max=4096,
+        options=STILL,
+        override=LEAF,
+    )
+    domain: FloatVectorProperty(
+        name="Domain",
+        description="Lowest and highest (u,v) of the locus",
+        size=2,
+        default=(-1.0, 2.0),
+        soft_min=-4.0,
+        soft_max=5.0,
+        options=STILL,
+        override=LEAF,
+    )
+    image: PointerProperty(
+        type=bpy.types.Image, name="Image", description="The picture of the locus", options=STILL, override=LEAF
+    )
+    inputs: StringProperty(description="Fingerprint of what the picture shows", options={"HIDDEN"}, override=LEAF)
+
+
+class IFSMorphPathSettings(bpy.types.PropertyGroup):
+    """How the path is planned and keyed, and what was found about it."""
+
+    method: EnumProperty(
+        name="Method",
+        description="Which way to take from the initial to the final shape",
+        items=_choices(METHODS),
+        default=identifier("planned"),
+        options=STILL,
+        override=LEAF,
+    )
+    frame_start: IntProperty(
+        name="Frame Start",
+        description="Frame that shows the initial shape",
+        default=1,
+        options=STILL,
+        override=LEAF,
+    )
+    frame_end: IntProperty(
+        name="End", description="Frame that shows the final shape", default=120, options=STILL, override=LEAF
+    )
+    report: StringProperty(name="Report", description="What was found about the path", override=LEAF)
+    inputs: StringProperty(description="Fingerprint of what the path was made for", options={"HIDDEN"}, override=LEAF)
+
+
+class IFSMorphOutputSettings(bpy.types.PropertyGroup):
+    """How the attractor becomes an image or a point cloud, and the data that it becomes."""
+
+    mode: EnumProperty(
+        name="Mode",
+        description="What the picture shows",
+        items=(
+            ("SET", "Set", "The attractor in one color"),
+            ("DENSITY", "Density", "How densely the points of the attractor lie, through a color ramp"),
+            ("ATTRACTORLET", "Attractorlets", "Each attractorlet in the color of its map"),
+        ),
+        default="ATTRACTORLET",
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
+    resolution: IntVectorProperty(
+        name="Resolution",
+        description="Width and height of the image in pixels",
+        size=2,
+        subtype="XYZ",
+        default=(1024, 1024),
+        min=8,
+        max=16384,
+        soft_max=4096,
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
+    antialiasing: IntProperty(
+        name="Antialiasing",
+        description="Samples along each side of a pixel",
+        default=2,
+        min=1,
+        max=4,
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
+    color: FloatVectorProperty(
+        name="Color",
+        description="Color of the attractor",
+        subtype="COLOR",
+        size=4,
+        min=0.0,
+        max=1.0,
+        default=(0.9, 0.9, 0.9, 1.0),
+        override=LEAF,
+        update=redraw,
+    )
+    background: FloatVectorProperty(
+        name="Background",
+        description="Color where there is no attractor; transparent at alpha zero",
+        subtype="COLOR",
+        size=4,
+        min=0.0,
+        max=1.0,
+        default=(0.0, 0.0, 0.0, 0.0),
+        override=LEAF,
+        update=redraw,
+    )
+    curve: EnumProperty(
+        name="Curve",
+        description="How density becomes brightness",
+        items=(
+            ("LOG", "Logarithm", "Show dense and thin parts alike"),
+            ("GAMMA", "Gamma", "Brightness is a power of the density"),
+            ("LINEAR", "Linear", "Brightness is the density"),
+        ),
+        default="LOG",
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
+    exposure: FloatProperty(
+        name="Exposure",
+        description="Brightness of the density, in stops",
+        default=0.0,
+        soft_min=-10.0,
+        soft_max=10.0,
+        override=LEAF,
+        update=redraw,
+    )
+    gamma: FloatProperty(
+        name="Gamma",
+        description="Lifts thin parts above 1 and darkens them below",
+        default=2.2,
+        min=0.05,
+        soft_max=5.0,
+        override=LEAF,
+        update=redraw,
+    )
+    ramp: PointerProperty(
+        type=bpy.types.Texture,
+        name="Color Ramp",
+        description="Texture that holds the color ramp from thin to dense",
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
+    fit_window: BoolProperty(
+        name="Fit Window",
+        description="Choose the window so that every shape of the morph fits in it",
+        default=True,
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
+    window: FloatVectorProperty(
+        name="Window",
+        description="Least x, least y, largest x and largest y of the part of the plane that the image shows",
+        size=4,
+        default=(-0.1, -0.1, 1.1, 1.1),
+        precision=3,
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
+    point_count: IntProperty(
+        name="Points",
+        description="Number of points of the attractor",
+        default=100_000,
+        min=1,
+        soft_max=2_000_000,
+        max=50_000_000,
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
+    point_radius: FloatProperty(
+        name="Radius",
+        description="Radius of the points, as a multiple of the size that just covers the attractor",
+        default=1.0,
+        min=0.0,
+        soft_max=10.0,
+        override=LEAF,
+        update=redraw,
+    )
+    point_color: EnumProperty(
+        name="Color By",
+        description="What the color of a point shows",
+        items=(
+            ("ATTRACTORLET", "Attractorlet", "The color of the map whose attractorlet the point belongs to"),
+            ("SINGLE", "Single Color", "One color for all points"),
+        ),
+        default="ATTRACTORLET",
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
+    image: PointerProperty(
+        type=bpy.types.Image,
+        name="Image",
+        description="The image that the attractor is rendered into",
+        options=STILL,
+        override=LEAF,
+    )
+    spare_image: PointerProperty(
+        type=bpy.types.Image,
+        name="Spare Image",
+        description="Takes turns with the image where Blender would not notice a change of its pixels",
+        options={"HIDDEN"},
+        override=LEAF,
+    )
+    nodes: PointerProperty(
+        type=bpy.types.NodeTree,
+        name="Node Group",
+        description="The geometry nodes that turn vertices into points",
+        options=STILL,
+        override=LEAF,
+    )
+    material: PointerProperty(
+        type=bpy.types.Material,
+        name="Material",
+        description="The material that shows the output",
+        options=STILL,
+        override=LEAF,
+    )
+
+
+class IFSMorphSettings(bpy.types.PropertyGroup):
+    """A morph and its output, on an object."""
+
+    kind: EnumProperty(
+        name="Kind",
+        description="What the object shows the attractor as",
+        items=(
+            ("NONE", "None", "The object is no IFS morph"),
+            ("IMAGE", "Image Plane", "A plane with the attractor as its texture"),
+            ("POINTS", "Point Cloud", "A point cloud of the attractor"),
+        ),
+        default="NONE",
+        options=STILL,
+        override=LEAF,
+    )
+    initial: PointerProperty(type=IFSMorphShape, name="Initial Shape", override=LEAF)
+    final: PointerProperty(type=IFSMorphShape, name="Final Shape", override=LEAF)
+    scheme: EnumProperty(
+        name="Scheme",
+        description="How the linear parts of the maps are interpolated",
+        items=_choices(SCHEMES),
+        default=identifier("polar"),
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
+    uv: FloatVectorProperty(
+        name="UV",
+        description="Place in the morph: u drives the linear parts of the maps and v their translations. "
+        "(0, 0) is the initial shape, (1, 1) the final one",
+        size=2,
+        default=(0.0, 0.0),
+        soft_min=-1.0,
+        soft_max=2.0,
+        step=1,
+        precision=4,
+        override=LEAF,
+        update=redraw,
+    )
+    swell: FloatProperty(
+        name="Swell",
+        description="Thickens the maps where (u,v) alone would let the shape break",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        step=1,
+        precision=4,
+        override=LEAF,
+        update=redraw,
+    )
+    gap_resolution: IntProperty(
+        name="Gap Resolution",
+        description="A gap counts from the diameter of the shape divided by this, as if it were drawn this many "
+        "pixels wide",
+        default=300,
+        min=2,
+        soft_max=4000,
+        options=STILL,
+        override=LEAF,
+    )
+    locus: PointerProperty(type=IFSMorphLocusSettings, name="Connectedness Locus", override=LEAF)
+    path: PointerProperty(type=IFSMorphPathSettings, name="Path", override=LEAF)
+    output: PointerProperty(type=IFSMorphOutputSettings, name="Output", override=LEAF)
+
+
+class IFSMorphLocusPicture(bpy.types.PropertyGroup):
+    """Where the nodes of a locus lie, kept on its picture so that (u,v) can be found on it."""
+
+    lowest: FloatVectorProperty(
+        name="Lowest", description="(u,v) of the lower left pixel's middle", size=2, options=STILL
+    )
+    spacing: FloatProperty(
+        name="Spacing", description="Step of u and v from pixel to pixel; zero on other images", options=STILL
+    )
+
+
+CLASSES = (
+    IFSMorphMap,
+    IFSMorphShape,
+    IFSMorphLocusSettings,
+    IFSMorphPathSettings,
+    IFSMorphOutputSettings,
+    IFSMorphSettings,
+    IFSMorphLocusPicture,
+)
+
+
+def register():
+    """Register the property groups and hang them on objects and images."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Object.ifs_morph = PointerProperty(type=IFSMorphSettings, name="IFS Morph", override=LEAF)
+    bpy.types.Image.ifs_morph_locus = PointerProperty(type=IFSMorphLocusPicture, name="IFS Morph Locus")
+
+
+def unregister():
+    """Take them off again; what files hold stays in them."""
+    del bpy.types.Image.ifs_morph_locus
+    del bpy.types.Object.ifs_morph
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

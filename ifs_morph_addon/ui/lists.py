@@ -1,0 +1,25 @@
+"""The lists of maps."""
+
+import bpy
+
+
+class IFSMORPH_UL_maps(bpy.types.UIList):
+    """The maps of a shape, each with its color and name."""
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_property, index=0, flt_flag=0):
+        """Draw one map."""
+        row = layout.row(align=True)
+        swatch = row.row()
+        swatch.ui_units_x = 1.2
+        swatch.prop(item, "color", text="")
+        row.prop(item, "name", text="", emboss=False)
+
+
+def register():
+    """Register the list."""
+    bpy.utils.register_class(IFSMORPH_UL_maps)
+
+
+def unregister():
+    """Unregister the list."""
+    bpy.utils.unregister_class(IFSMORPH_UL_maps)

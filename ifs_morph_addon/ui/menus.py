@@ -1,0 +1,65 @@
+"""The entry of the Add menu and the library of shapes as menus."""
+
+import bpy
+
+from ...core.shapes import SHAPES
+
+
+class IFSMORPH_MT_add(bpy.types.Menu):
+    """Kinds of objects that show a morph."""
+
+    bl_idname = "IFSMORPH_MT_add"
+    bl_label = "IFS Morph"
+
+    def draw(self, context):
+        """Draw one entry for each kind."""
+        self.layout.operator_context = "INVOKE_REGION_WIN"
+        self.layout.operator("object.ifs_morph_add", text="Image Plane", icon="FILE_IMAGE").kind = "IMAGE"
+        self.layout.operator("object.ifs_morph_add", text="Point Cloud", icon="POINTCLOUD_DATA").kind = "POINTS"
+
+
+class _Library:
+    bl_label = "Library"
+
+    def draw(self, context):
+        """Draw one entry for each shape of the library."""
+        for name, ifs in SHAPES.items():
+            maps = "map" if ifs.count == 1 else "maps"
+            text = f"{name[0].upper()}{name[1:]}  ({ifs.count} {maps})"
+            button = self.layout.operator("ifs_morph.load_shape", text=text)
+            button.shape, button.end = name, self.end
+
+
+class IFSMORPH_MT_library_initial(_Library, bpy.types.Menu):
+    """Shapes to start from."""
+
+    bl_idname = "IFSMORPH_MT_library_initial"
+    end = "INITIAL"
+
+
+class IFSMORPH_MT_library_final(_Library, bpy.types.Menu):
+    """Shapes to end with."""
+
+    bl_idname = "IFSMORPH_MT_library_final"
+    end = "FINAL"
+
+
+CLASSES = (IFSMORPH_MT_add, IFSMORPH_MT_library_initial, IFSMORPH_MT_library_final)
+
+
+def _draw_in_add_menu(self, context):
+    self.layout.menu(IFSMORPH_MT_add.bl_idname, icon="OUTLINER_OB_POINTCLOUD")
+
+
+def register():
+    """Register the menus and add the entry."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.VIEW3D_MT_add.append(_draw_in_add_menu)
+
+
+def unregister():
+    """Remove the entry and unregister the menus."""
+    bpy.types.VIEW3D_MT_add.remove(_draw_in_add_menu)
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,305 @@
+"""The sidebar tab IFS Morph: one panel for each thing that an animator thinks of."""
+
+import textwrap
+
+import bpy
+
+from .. import fcurves, outputs
+from ..conversion import locus_fingerprint, path_fingerprint, shape_problem
+
+CHARACTER_WIDTH = 6.2
+"""Mean width of a letter in the interface font at scale 1, in pixels, for breaking sentences into lines."""
+
+
+class _Panel:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "IFS Morph"
+
+    @classmethod
+    def poll(cls, context):
+        """Sub-panels show for morph objects only."""
+        return context.object is not None and context.object.ifs_morph.kind != "NONE"
+
+
+class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
+    """The active morph, or how to add one."""
+
+    bl_label = "IFS Morph"
+
+    @classmethod
+    def poll(cls, context):
+        """Show always, so that the tab says what to do."""
+        return True
+
+    def draw(self, context):
+        """Draw the place in the morph, and what is wrong with it."""
+        layout = self.layout
+        owner = context.object
+        if owner is None or owner.ifs_morph.kind == "NONE":
+            column = layout.column()
+            column.operator("object.ifs_morph_add", text="Add Image Plane", icon="FILE_IMAGE").kind = "IMAGE"
+            column.operator("object.ifs_morph_add", text="Add Point Cloud", icon="POINTCLOUD_DATA").kind = "POINTS"
+            return
+        settings = owner.ifs_morph
+        layout.use_property_split = True
+        column = layout.column(align=True)
+        column.prop(settings, "uv", index=0, text="U (Linear Parts)")
+        column.prop(settings, "uv", index=1, text="V (Translations)")
+        column.prop(settings, "swell")
+        problem = shape_problem(settings) or outputs.message(owner)
+        if problem:
+            _sentence(layout, context, problem, icon="ERROR")
+        if owner.library is not None:
+            _sentence(
+                layout,
+                context,
+                "This object is linked from a library and cannot be changed.",
+                icon="LIBRARY_DATA_DIRECT",
+            )
+
+
+class _ShapePanel(_Panel):
+    bl_parent_id = "IFSMORPH_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the library, the list of maps, and the active map."""
+        layout = self.layout
+        shape = getattr(context.object.ifs_morph, self.shape)
+        end = self.shape.upper()
+        layout.menu(f"IFSMORPH_MT_library_{self.shape}", text=_title(shape.name) or "Library", icon="ASSET_MANAGER")
+
+        row = layout.row()
+        row.template_list("IFSMORPH_UL_maps", self.shape, shape, "maps", shape, "active_index", rows=5)
+        column = row.column(align=True)
+        column.operator("ifs_morph.map_add", text="", icon="ADD").end = end
+        column.operator("ifs_morph.map_remove", text="", icon="REMOVE").end = end
+        column.separator()
+        column.operator("ifs_morph.map_duplicate", text="", icon="DUPLICATE").end = end
+        column.separator()
+        for direction, icon in (("UP", "TRIA_UP"), ("DOWN", "TRIA_DOWN")):
+            button = column.operator("ifs_morph.map_move", text="", icon=icon)
+            button.end, button.direction = end, direction
+
+        if 0 <= shape.active_index < len(shape.maps):
+            self.draw_map(layout, shape.maps[shape.active_index])
+
+    def draw_map(self, layout, item):
+        """Draw the active map as turn, stretch and shear, and as a matrix."""
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(item, "translation")
+        column.prop(item, "rotation")
+        column.prop(item, "scale")
+        column.prop(item, "shear")
+        column.prop(item, "weight")
+        layout.label(text="Matrix:")
+        grid = layout.column(align=True)
+        for first in (0, 3):
+            row = grid.row(align=True)
+            for index in range(first, first + 3):
+                row.prop(item, "matrix", index=index, text="")
+
+
+class IFSMORPH_PT_initial(_ShapePanel, bpy.types.Panel):
+    """The initial shape."""
+
+    bl_label = "Initial Shape"
+    shape = "initial"
+
+
+class IFSMORPH_PT_final(_ShapePanel, bpy.types.Panel):
+    """The final shape."""
+
+    bl_label = "Final Shape"
+    shape = "final"
+
+
+class IFSMORPH_PT_interpolation(_Panel, bpy.types.Panel):
+    """How one shape becomes the other."""
+
+    bl_label = "Interpolation"
+    bl_parent_id = "IFSMORPH_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        """Draw the scheme and each map's winding."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.object.ifs_morph
+        layout.prop(settings, "scheme")
+        column = layout.column(align=True)
+        column.active = settings.scheme != "ELEMENTWISE"
+        for k, item in enumerate(settings.final.maps):
+            column.prop(item, "winding", text=item.name if k else f"Winding  {item.name}")
+
+
+class IFSMORPH_PT_locus(_Panel, bpy.types.Panel):
+    """The connectedness locus."""
+
+    bl_label = "Connectedness Locus"
+    bl_parent_id = "IFSMORPH_PT_main"
+
+    def draw(self, context):
+        """Draw the settings, the buttons, and the picture."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.object.ifs_morph
+        locus = settings.locus
+        layout.prop(locus, "resolution")
+        layout.prop(settings, "gap_resolution")
+        column = layout.column(align=True)
+        column.prop(locus, "domain", index=0, text="Domain From")
+        column.prop(locus, "domain", index=1, text="To")
+        layout.operator("ifs_morph.compute_locus", icon="IMAGE_DATA")
+        if locus.image is not None:
+            layout.operator("ifs_morph.show_locus", icon="WINDOW")
+            if locus.inputs != locus_fingerprint(settings):
+                _sentence(layout, context, "The locus is out of date: the morph has changed since.", icon="INFO")
+
+
+class IFSMORPH_PT_path(_Panel, bpy.types.Panel):
+    """The path through the locus."""
+
+    bl_label = "Path"
+    bl_parent_id = "IFSMORPH_PT_main"
+
+    def draw(self, context):
+        """Draw the settings, the buttons, and the report."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        owner = context.object
+        settings = owner.ifs_morph
+        path = settings.path
+        layout.prop(path, "method")
+        column = layout.column(align=True)
+        column.prop(path, "frame_start")
+        column.prop(path, "frame_end")
+        column = layout.column(align=True)
+        column.operator("ifs_morph.plan_path", icon="ANIM")
+        column.operator("ifs_morph.key_straight", icon="IPO_LINEAR")
+        row = layout.row(align=True)
+        row.operator("ifs_morph.check_path", icon="CHECKMARK")
+        row.operator("ifs_morph.clear_path", icon="X")
+        if not path.report:
+            return
+        if path.inputs != path_fingerprint(settings) or not fcurves.has_path(owner):
+            _sentence(layout, context, "The report is out of date: the morph has changed since.", icon="INFO")
+        box = layout.box()
+        box.active = path.inputs == path_fingerprint(settings)
+        for line in path.report.splitlines():
+            _sentence(box, context, line)
+
+
+class IFSMORPH_PT_output(_Panel, bpy.types.Panel):
+    """What the attractor becomes."""
+
+    bl_label = "Output"
+    bl_parent_id = "IFSMORPH_PT_main"
+
+    def draw(self, context):
+        """Draw what the kind of the object needs."""
+        layout = self.layout
+        layout.use_property_split = True
+        settings = context.object.ifs_morph
+        if settings.kind == "IMAGE":
+            self.draw_image(layout, settings.output)
+        else:
+            self.draw_points(layout, settings.output)
+        layout.operator("ifs_morph.repair_output", icon="FILE_REFRESH")
+
+    def draw_image(self, layout, output):
+        """Draw what an image needs."""
+        layout.prop(output, "mode")
+        column = layout.column(align=True)
+        column.prop(output, "resolution", index=0, text="Resolution X")
+        column.prop(output, "resolution", index=1, text="Y")
+        layout.prop(output, "antialiasing")
+        if output.mode == "SET":
+            layout.prop(output, "color")
+        if output.mode == "DENSITY":
+            layout.prop(output, "curve")
+            layout.prop(output, "exposure")
+            if output.curve == "GAMMA":
+                layout.prop(output, "gamma")
+            if output.ramp is not None:
+                layout.template_color_ramp(output.ramp, "color_ramp", expand=True)
+        layout.prop(output, "background")
+
+    def draw_points(self, layout, output):
+        """Draw what points need."""
+        layout.prop(output, "point_count")
+        layout.prop(output, "point_radius")
+        layout.prop(output, "point_color")
+        if output.point_color == "SINGLE":
+            layout.prop(output, "color")
+
+
+class IFSMORPH_PT_window(_Panel, bpy.types.Panel):
+    """The part of the plane that the image shows."""
+
+    bl_label = "Fit Window"
+    bl_parent_id = "IFSMORPH_PT_output"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Only images have a window."""
+        return super().poll(context) and context.object.ifs_morph.kind == "IMAGE"
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(context.object.ifs_morph.output, "fit_window", text="")
+
+    def draw(self, context):
+        """Draw the window's sides."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        output = context.object.ifs_morph.output
+        column = layout.column(align=True)
+        column.active = not output.fit_window
+        for index, text in ((0, "Left"), (1, "Bottom"), (2, "Right"), (3, "Top")):
+            column.prop(output, "window", index=index, text=text)
+
+
+def _title(name: str) -> str:
+    return name[:1].upper() + name[1:]
+
+
+def _sentence(layout, context, text: str, icon: str = "NONE") -> None:
+    """Draw a sentence in as many lines as the sidebar needs."""
+    width = context.region.width / (CHARACTER_WIDTH * context.preferences.system.ui_scale) - 8
+    column = layout.column(align=True)
+    for k, line in enumerate(textwrap.wrap(text, max(16, int(width)))):
+        blank = "BLANK1" if icon != "NONE" else "NONE"
+        column.label(text=line, icon=blank if k else icon)
+
+
+CLASSES = (
+    IFSMORPH_PT_main,
+    IFSMORPH_PT_initial,
+    IFSMORPH_PT_final,
+    IFSMORPH_PT_interpolation,
+    IFSMORPH_PT_locus,
+    IFSMORPH_PT_path,
+    IFSMORPH_PT_output,
+    IFSMORPH_PT_window,
+)
+
+
+def register():
+    """Register the panels."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    """Unregister the panels."""
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
