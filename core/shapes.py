@@ -207,11 +207,11 @@ def twindragon() -> IFS:
 
 
 def terdragon() -> IFS:
-    """Return the terdragon from (0, 0) to (1, 0): three edges, turning by 120 degrees right and then left.
+    """Return the terdragon from (0, 0) to (1, 0): three edges, turning by 120 degrees left and then right.
 
     Source: Davis & Knuth 1970, Number representations and dragon curves.
     """
-    return IFS(chain([turn(30), turn(-90), turn(30)]), name="terdragon")
+    return IFS(chain([turn(-30), turn(90), turn(-30)]), name="terdragon")
 
 
 def gosper_flowsnake() -> IFS:

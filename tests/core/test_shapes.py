@@ -208,7 +208,7 @@ POINTS = {
     "Lévy curve": [0, 1, 0.5 + 0.5j, 1j, 1 + 1j, 0.5 + 1j],
     "Heighway dragon": [0, 1, 0.5 + 0.5j],
     "twindragon": [0, 1, 0.5],
-    "terdragon": [0, 1, turn(30) / SQUARE_ROOT_3],
+    "terdragon": [0, 1, turn(-30) / SQUARE_ROOT_3],
     "Gosper flowsnake": [0, 1],
     "Rauzy fractal": [0, 1],
     "pentigree": [0, 1, 1 / GOLDEN_RATIO**2],  # the fourth edge ends on the way from 0 to 1

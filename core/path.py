@@ -1,0 +1,375 @@
+"""A path through the (u,v) plane from the initial to the final shape, as keys for an animation.
+
+The path is planned on the connectedness locus (Burch & Hart 1997, Section 6) and keyed with as few keys as keep it
+there. Where no connected path exists, or only a far longer one, it takes the way of least swell instead. Whatever the
+plan, every frame of the keyed curve is checked at the end, and swell is added where one fails.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import parallel
+from .connectedness import Connectedness
+from .locus import Locus, compute_locus_steps, nodes
+from .morph import Morph
+from .overlap import decide_column
+from .report import PathReport, check_frames_steps, family
+from .route import STEPS, cheapest_route, clearance
+from .swelling import bezier, envelope, least_swell_field_steps, least_swell_steps, slopes
+
+METHODS = ("planned", "straight", "straight unswollen")
+"""Through the locus; straight with least swell; straight without swell, the paper's Figure 5."""
+
+LOCUS_RESOLUTION = 256
+SWELL_RESOLUTION = 97
+"""Nodes along u of the locus and of the field of least swell, where the caller brings no locus."""
+
+FAR_LONGER = 4.0
+"""A connected path more than this many times as long as the straight line is given up for swell."""
+
+EDGE_AVERSION = 4.0
+"""What it costs to pass right beside a node outside, against 1 in the open."""
+
+SWELL_AVERSION = 40.0
+"""What swell 1 costs, against 1 for none."""
+
+REPLANS = 60
+"""How often the route is planned anew round edges whose interior points fail."""
+
+SAMPLES_PER_NODE = 4
+"""How densely straight segments are tested, beside every quarter of a frame."""
+
+SWELL_KEYS = 24
+"""Most keys of a swell curve before those that single frames need."""
+
+
+@dataclass(frozen=True, eq=False)
+class Keys:
+    """Keys of a cubic Bezier curve in time, as an F-curve has them.
+
+    The handles lie at exactly a third of the interval in time, so that time is linear along each piece.
+
+    Attributes
+    ----------
+    time : (K,)
+        Ascending from 0 to 1.
+    value, handle_left, handle_right : (K,) or (K, 2)
+        Values of the keys and of the handles before and after them.
+    """
+
+    time: np.ndarray
+    value: np.ndarray
+    handle_left: np.ndarray
+    handle_right: np.ndarray
+
+    def at(self, t: np.ndarray) -> np.ndarray:
+        """Values at the times t (F,), clamped to [0, 1]."""
+        t = np.clip(t, 0.0, 1.0)
+        k = np.clip(np.searchsorted(self.time, t, side="right") - 1, 0, len(self.time) - 2)
+        x = (t - self.time[k]) / (self.time[k + 1] - self.time[k])
+        x = x.reshape(x.shape + (1,) * (self.value.ndim - 1))
+        return bezier(self.value[k], self.handle_right[k], self.handle_left[k + 1], self.value[k + 1], x)
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """A keyed path; ``morph.at(*path.at(t))`` is the IFS at the time t.
+
+    Attributes
+    ----------
+    keys : Keys
+        Of (u,v), values (K, 2).
+    swell_keys : Keys
+        Of the swell, values (S,).
+    report : PathReport
+    """
+
+    keys: Keys
+    swell_keys: Keys
+    report: PathReport
+
+    def at(self, t: float) -> tuple[float, float, float]:
+        """u, v and swell at the time t in [0, 1]."""
+        u, v, swell = self.sample(np.array([float(t)]))[0]
+        return float(u), float(v), float(swell)
+
+    def sample(self, t: np.ndarray) -> np.ndarray:
+        """u, v and swell (F, 3) at the times t (F,) in [0, 1]."""
+        return _sample(self.keys, self.swell_keys, np.asarray(t, dtype=float))
+
+
+def plan_path(
+    morph: Morph,
+    locus: Locus | None = None,
+    frames: int = 240,
+    tolerance: float = 1 / 300,
+    method: str = "planned",
+    threads: int | None = None,
+    progress: Callable[[float], bool | None] | None = None,
+) -> Path:
+    """Plan a path from (0,0) to (1,1) on which the shape stays in one piece.
+
+    Parameters
+    ----------
+    morph : Morph
+    locus : Locus, optional
+        Computed at 256 nodes a side if not given; its own tolerance should be the same.
+    frames : int
+        Of the animation; keys lie on whole frames, and each frame is checked.
+    tolerance : float
+        Relative to the enclosing diameter.
+    method : str
+        One of `METHODS`.
+    threads : int, optional
+        None for all processors; the path does not depend on it.
+    progress : callable, optional
+        Told the share done; returning False cancels with `parallel.Cancelled`.
+
+    Raises
+    ------
+    IFSError
+        If an end has no attractor.
+    ValueError
+        If the method is unknown, there are fewer than 2 frames, or the locus does not hold (0,0) and (1,1).
+    """
+    return parallel.finish(plan_path_steps(morph, locus, frames, tolerance, method, threads), progress)
+
+
+def plan_path_steps(
+    morph: Morph,
+    locus: Locus | None = None,
+    frames: int = 240,
+    tolerance: float = 1 / 300,
+    method: str = "planned",
+    threads: int | None = None,
+) -> Generator[float, None, Path]:
+    """`plan_path` in steps of about 50 milliseconds, each yielding the share done."""
+    if method not in METHODS:
+        raise ValueError(f"There is no path method “{method}”; choose one of {', '.join(METHODS)}.")
+    if frames < 2:
+        raise ValueError(f"A path over {frames} frames cannot be keyed; it needs 2 or more.")
+    morph.initial.require_attractor()
+    morph.final.require_attractor()
+    keys = _straight_keys(np.array([[0.0, 0.0], [1.0, 1.0]]), frames)
+    reason = ""
+    if method == "planned":
+        if locus is None:
+            locus = yield from _part(
+                compute_locus_steps(morph, LOCUS_RESOLUTION, tolerance, threads=threads, gap=False), 0.0, 0.4
+            )
+        points = _route_inside(morph, locus, tolerance)
+        if points is None or _length(points) > FAR_LONGER * np.sqrt(2):
+            reason = (
+                "No connected path exists in (u,v) on this locus, so the maps swell just enough."
+                if points is None
+                else "The connected path in (u,v) is far longer than the straight line, so the maps swell instead."
+            )
+            u, v = nodes(SWELL_RESOLUTION)
+            field = yield from _part(least_swell_field_steps(morph, u, v, tolerance, threads=threads), 0.4, 0.7)
+            points = _route_of_least_swell(u, v, field)
+        keys = _rounded(morph, _straight_keys(points, frames), frames, tolerance)
+    swell_keys = _no_swell()
+    if method != "straight unswollen":
+        swell_keys = yield from _part(_swell_steps(morph, keys, frames, tolerance, threads), 0.7, 0.9)
+    times = np.arange(frames) / (frames - 1)
+    checked = yield from _part(
+        check_frames_steps(morph, _sample(keys, swell_keys, times), tolerance, threads), 0.9, 0.95
+    )
+    straight = yield from _part(
+        check_frames_steps(morph, np.stack([times, times, 0 * times], axis=1), tolerance, threads), 0.95, 1.0
+    )
+    return Path(keys, swell_keys, PathReport(checked, straight, method, reason, morph.flips))
+
+
+def _part(steps: Generator[float, None, object], start: float, end: float) -> Generator[float, None, object]:
+    """Pass on the steps of one part of the work as shares of the whole."""
+    while True:
+        try:
+            fraction = next(steps)
+        except StopIteration as done:
+            return done.value
+        yield start + (end - start) * fraction
+
+
+def _sample(keys: Keys, swell_keys: Keys, times: np.ndarray) -> np.ndarray:
+    return np.column_stack([keys.at(times), np.clip(swell_keys.at(times), 0.0, 1.0)])
+
+
+def _length(points: np.ndarray) -> float:
+    return float(np.hypot(*np.diff(points, axis=0).T).sum())
+
+
+def _straight_keys(points: np.ndarray, frames: int) -> Keys:
+    """Keys at points (K, 2) on whole frames, at a steady speed, joined by straight lines."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    frame = np.round(along / along[-1] * (frames - 1))
+    # Whole frames only where there are enough of them to keep the keys apart.
+    time = frame / (frames - 1) if (np.diff(frame) > 0).all() else along / along[-1]
+    third = np.diff(points, axis=0) / 3
+    left, right = points.copy(), points.copy()
+    left[1:] -= third
+    right[:-1] += third
+    return Keys(time, points, left, right)
+
+
+def _no_swell() -> Keys:
+    zero = np.zeros(2)
+    return Keys(np.array([0.0, 1.0]), zero, zero, zero)
+
+
+def _route_inside(morph: Morph, locus: Locus, tolerance: float) -> np.ndarray | None:
+    """Points (K, 2) of a connected path with few corners, or None."""
+    ends = [locus.node(0.0, 0.0), locus.node(1.0, 1.0)]
+    for (row, column), end in zip(ends, (0.0, 1.0), strict=True):
+        if (locus.u[column], locus.v[row]) != (end, end):
+            raise ValueError(f"The locus has no node at ({end:g},{end:g}); compute one whose domain holds it.")
+    inside = locus.state == Connectedness.CONNECTED
+    with np.errstate(divide="ignore"):
+        cost = np.where(inside, 1 + EDGE_AVERSION / np.maximum(clearance(inside), 1), np.inf)
+    closed = np.zeros((*inside.shape, 8), dtype=np.bool_)
+    start, goal = (row * len(locus.u) + column for row, column in ends)
+    if not inside.flat[start] or not inside.flat[goal]:
+        return None
+    for _ in range(REPLANS):
+        route = cheapest_route(cost, closed, start, goal)
+        if len(route) == 0:
+            return None
+        rows, columns = np.divmod(route, len(locus.u))
+        points = np.column_stack([locus.u[columns], locus.v[rows]])
+        failing = _failing_edges(morph, points, tolerance)
+        if len(failing) == 0:
+            return _simplified(morph, points, tolerance)
+        for edge in failing:
+            step = np.array([rows[edge + 1] - rows[edge], columns[edge + 1] - columns[edge]])
+            k = int(np.flatnonzero((STEPS == step).all(axis=1))[0])
+            closed[rows[edge], columns[edge], k] = True
+            closed[rows[edge + 1], columns[edge + 1], 7 - k] = True
+    return None
+
+
+def _failing_edges(morph: Morph, points: np.ndarray, tolerance: float) -> np.ndarray:
+    """Indices of the edges between successive points (K, 2) that are not connected at an interior point."""
+    shares = (np.arange(1, SAMPLES_PER_NODE) / SAMPLES_PER_NODE)[:, None, None]
+    between = (1 - shares) * points[:-1] + shares * points[1:]
+    held = _connected(morph, between.reshape(-1, 2), tolerance).reshape(SAMPLES_PER_NODE - 1, -1)
+    return np.flatnonzero(~held.all(axis=0))
+
+
+def _connected(morph: Morph, uv: np.ndarray, tolerance: float) -> np.ndarray:
+    """Whether the shape is connected at each of uv (F, 2), without swell."""
+    linear, translation = family(morph, np.column_stack([uv, np.zeros(len(uv))]))
+    return np.array(
+        [
+            decide_column(linear[k], translation[k : k + 1], tolerance, False)[0][0] == Connectedness.CONNECTED
+            for k in range(len(uv))
+        ],
+        dtype=bool,
+    )
+
+
+def _simplified(morph: Morph, points: np.ndarray, tolerance: float) -> np.ndarray:
+    """Fewer points (K, 2): from each the furthest that a connected segment reaches, found by halving."""
+
+    def reaches(start: int, end: int) -> bool:
+        steps = max(2, int(SAMPLES_PER_NODE * (end - start)))
+        shares = (np.arange(1, steps) / steps)[:, None]
+        uv = (1 - shares) * points[start] + shares * points[end]
+        # A sparse look first: most segments that fail do so at once.
+        return bool(_connected(morph, uv[::16], tolerance).all() and _connected(morph, uv, tolerance).all())
+
+    kept = [0]
+    while kept[-1] < len(points) - 1:
+        low, high = kept[-1] + 1, len(points) - 1
+        if reaches(kept[-1], high):
+            low = high
+        while high - low > 1:
+            middle = (low + high) // 2
+            if reaches(kept[-1], middle):
+                low = middle
+            else:
+                high = middle
+        kept.append(low)
+    return points[kept]
+
+
+def _route_of_least_swell(u: np.ndarray, v: np.ndarray, field: np.ndarray) -> np.ndarray:
+    """Points (K, 2) of the route over the nodes that costs the least swell; the diagonal if all others are closed."""
+    start, goal = (int(np.searchsorted(v, end) * len(u) + np.searchsorted(u, end)) for end in (0.0, 1.0))
+    cost = 1 + SWELL_AVERSION * field
+    route = cheapest_route(cost, np.zeros((*field.shape, 8), dtype=np.bool_), start, goal)
+    if len(route) == 0:
+        return np.array([[0.0, 0.0], [1.0, 1.0]])
+    rows, columns = np.divmod(route, len(u))
+    return _few_corners(np.column_stack([u[columns], v[rows]]), 1.5 * (u[1] - u[0]))
+
+
+def _few_corners(points: np.ndarray, reach: float) -> np.ndarray:
+    """Drop points (K, 2) within `reach` of the line through those kept (Douglas & Peucker 1973)."""
+    along = points[-1] - points[0]
+    offset = points - points[0]
+    away = np.abs(offset[:, 0] * along[1] - offset[:, 1] * along[0]) / max(float(np.hypot(*along)), 1e-12)
+    furthest = int(np.argmax(away))
+    if away[furthest] <= reach:
+        return points[[0, -1]]
+    before, after = _few_corners(points[: furthest + 1], reach), _few_corners(points[furthest:], reach)
+    return np.concatenate([before[:-1], after])
+
+
+def _rounded(morph: Morph, keys: Keys, frames: int, tolerance: float) -> Keys:
+    """Round the corners that can be: handles along the common direction, kept where the shape stays connected."""
+    time, points = keys.time, keys.value
+    for k in range(1, len(time) - 1):
+        before, after = time[k] - time[k - 1], time[k + 1] - time[k]
+        velocity = (points[k + 1] - points[k - 1]) / (time[k + 1] - time[k - 1])
+        left, right = keys.handle_left.copy(), keys.handle_right.copy()
+        left[k], right[k] = points[k] - velocity * before / 3, points[k] + velocity * after / 3
+        bent = Keys(time, points, left, right)
+        samples = int(SAMPLES_PER_NODE * max(8.0, (before + after) * (frames - 1))) + 1
+        uv = bent.at(np.linspace(time[k - 1], time[k + 1], samples))
+        if (np.abs(uv - np.clip(uv, -1, 2)) < 1e-9).all() and _connected(morph, uv, tolerance).all():
+            keys = bent
+    return keys
+
+
+def _swell_steps(
+    morph: Morph, keys: Keys, frames: int, tolerance: float, threads: int | None
+) -> Generator[float, None, Keys]:
+    """Keys of the least smooth swell that holds every frame together, zero at both ends."""
+    times = np.arange(frames) / (frames - 1)
+    uv = keys.at(times)
+    needed = yield from least_swell_steps(morph, uv, tolerance, 0.0, threads)
+    needed = _zero_at_ends(needed)
+    for attempt in range(10):
+        if not needed.any():
+            return _no_swell()
+        frame, swell = envelope(needed, max(2, (frames - 1) // SWELL_KEYS))
+        swell_keys = _smooth_keys(frame / (frames - 1), swell)
+        # More swell than the least can fail; there the next that works is asked for.
+        above = np.clip(swell_keys.at(times), 0.0, 1.0)
+        raised = yield from least_swell_steps(morph, uv, tolerance, above, threads)
+        raised = _zero_at_ends(raised)
+        yield (attempt + 1) / 10
+        failing = raised > above + 1e-12
+        failing[[0, -1]] = False
+        if not failing.any():
+            return swell_keys
+        needed = np.where(failing, raised, needed)
+    return swell_keys
+
+
+def _zero_at_ends(needed: np.ndarray) -> np.ndarray:
+    """Swell of each frame, none at the two ends, where the shapes are the user's own, and none where none helps."""
+    needed = np.where(needed <= 1, needed, 0.0)
+    needed[[0, -1]] = 0.0
+    return needed
+
+
+def _smooth_keys(time: np.ndarray, value: np.ndarray) -> Keys:
+    slope = slopes(time, value)
+    before = np.diff(time, prepend=time[0])
+    after = np.diff(time, append=time[-1])
+    return Keys(time, value, value - slope * before / 3, value + slope * after / 3)

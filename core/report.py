@@ -1,0 +1,160 @@
+"""Frame by frame, is the morph in one piece? And what that comes to, in numbers and in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import parallel
+from .connectedness import Connectedness
+from .morph import Morph
+from .overlap import decide_column
+
+CHUNK = 16
+"""Frames checked in one chunk of work."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrameCheck:
+    """The states of a run of frames.
+
+    Attributes
+    ----------
+    uv_swell : (F, 3)
+        What was checked: u, v and swell of each frame.
+    state : (F,) uint8
+        Values of `Connectedness`.
+    gap : (F, 2)
+        Brackets relative to the enclosing diameter; NaN without an attractor.
+    tolerance : float
+    """
+
+    uv_swell: np.ndarray
+    state: np.ndarray
+    gap: np.ndarray
+    tolerance: float
+
+    def count(self, state: Connectedness) -> int:
+        """Frames that have this state."""
+        return int(np.count_nonzero(self.state == state))
+
+    @property
+    def share_disconnected(self) -> float:
+        """Share of the frames in which the shape is in pieces, or has no attractor at all."""
+        broken = self.count(Connectedness.DISCONNECTED) + self.count(Connectedness.NO_ATTRACTOR)
+        return broken / len(self.state)
+
+    @property
+    def worst_gap(self) -> float:
+        """The widest gap of a disconnected frame, relative to the enclosing diameter; 0 if there is none."""
+        gaps = self.gap[self.state == Connectedness.DISCONNECTED]
+        return float(gaps.mean(axis=1).max()) if len(gaps) else 0.0
+
+    @property
+    def most_swell(self) -> float:
+        """The greatest swell of a frame."""
+        return float(self.uv_swell[:, 2].max())
+
+    @property
+    def mean_swell(self) -> float:
+        """The mean swell over the frames."""
+        return float(self.uv_swell[:, 2].mean())
+
+
+@dataclass(frozen=True, eq=False)
+class PathReport:
+    """What a path costs, beside the straight line from (0,0) to (1,1) without swell.
+
+    Attributes
+    ----------
+    path, straight : FrameCheck
+        Frame by frame.
+    method : str
+        How the path was found, one of `path.METHODS`.
+    reason : str
+        A sentence on why it is as it is, or nothing.
+    flips : tuple of int
+        Maps that reflect at one end only and pass through a line (see `Morph.flips`).
+    """
+
+    path: FrameCheck
+    straight: FrameCheck
+    method: str
+    reason: str
+    flips: tuple[int, ...]
+
+    def text(self) -> str:
+        """The report in a few plain sentences, a line each."""
+        lines = [_sentence("The path", self.path)]
+        if self.reason:
+            lines.append(self.reason)
+        if self.path.most_swell > 0:
+            lines.append(f"Swell: {self.path.most_swell:.2f} at most, {self.path.mean_swell:.3f} on average.")
+        if self.method != "straight unswollen":
+            lines.append(_sentence("The straight line without swell", self.straight))
+        if self.flips:
+            maps = ", ".join(str(i + 1) for i in self.flips)
+            lines.append(f"Flattened half-way, since only one end reflects: map {maps}.")
+        return "\n".join(lines)
+
+
+def check_frames(
+    morph: Morph,
+    uv_swell: np.ndarray,
+    tolerance: float = 1 / 300,
+    threads: int | None = None,
+    progress: Callable[[float], bool | None] | None = None,
+) -> FrameCheck:
+    """Decide for each frame whether the shape is in one piece.
+
+    Parameters
+    ----------
+    morph : Morph
+    uv_swell : (F, 3)
+        u, v and swell of each frame.
+    tolerance : float
+        Relative to the enclosing diameter of each frame's attractor.
+    """
+    return parallel.finish(check_frames_steps(morph, uv_swell, tolerance, threads), progress)
+
+
+def check_frames_steps(
+    morph: Morph, uv_swell: np.ndarray, tolerance: float = 1 / 300, threads: int | None = None
+) -> Generator[float, None, FrameCheck]:
+    """`check_frames` in steps, each yielding the share done."""
+    uv_swell = np.asarray(uv_swell, dtype=float).reshape(-1, 3)
+    linear, translation = family(morph, uv_swell)
+
+    def check(start: int) -> tuple[np.ndarray, np.ndarray]:
+        frames = range(start, min(start + CHUNK, len(uv_swell)))
+        found = [decide_column(linear[k], translation[k : k + 1], float(tolerance), True)[:2] for k in frames]
+        return np.concatenate([state for state, _ in found]), np.concatenate([gap for _, gap in found])
+
+    chunks = yield from parallel.steps(check, range(0, len(uv_swell), CHUNK), threads)
+    state = np.concatenate([chunk[0] for chunk in chunks])
+    return FrameCheck(uv_swell, state, np.concatenate([chunk[1] for chunk in chunks]), float(tolerance))
+
+
+def family(morph: Morph, uv_swell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Linear parts (F, N, 4) and translations (F, N, 2) of the morph at u, v, swell (F, 3), as the kernels take them."""
+    u, v, swell = uv_swell.T[..., None]
+    linear = np.ascontiguousarray(morph.linear(u, swell)).reshape(len(uv_swell), morph.count, 4)
+    return linear, np.ascontiguousarray(morph.translation(v))
+
+
+def _sentence(subject: str, check: FrameCheck) -> str:
+    frames = len(check.state)
+    pixels = round(1 / check.tolerance)
+    broken = check.count(Connectedness.DISCONNECTED)
+    parts = []
+    if broken:
+        gap = f"the widest gap {100 * check.worst_gap:.1f}% of the shape's size"
+        parts.append(f"{broken} in pieces ({100 * broken / frames:.0f}%, {gap})")
+    if check.count(Connectedness.UNDECIDED):
+        parts.append(f"{check.count(Connectedness.UNDECIDED)} undecided")
+    if check.count(Connectedness.NO_ATTRACTOR):
+        parts.append(f"{check.count(Connectedness.NO_ATTRACTOR)} without an attractor")
+    found = ", ".join(parts) if parts else "all in one piece"
+    return f"{subject}: {frames} frames, {found}, at 1/{pixels} of the shape's size."

@@ -1,0 +1,133 @@
+"""How much a morph must swell to stay in one piece: least swell, and a smooth curve above it."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+
+import numpy as np
+
+from . import parallel
+from .connectedness import Connectedness
+from .morph import Morph
+from .overlap import decide_column
+from .report import family
+
+LEVELS = 64
+"""Swell is tried at 0, 1/64, 2/64 ... 1, and the first that works is the least: more may be worse, for connectedness
+is not monotone in swell."""
+
+NEVER = 2.0
+"""Least swell where no swell up to 1 is known to work."""
+
+CHUNK = 8
+
+
+def least_swell_steps(
+    morph: Morph, uv: np.ndarray, tolerance: float, at_least: np.ndarray | float = 0.0, threads: int | None = None
+) -> Generator[float, None, np.ndarray]:
+    """Least swell (F,) that makes the shape connected at each of uv (F, 2), from `at_least` on; in steps."""
+    uv = np.asarray(uv, dtype=float).reshape(-1, 2)
+    start = np.broadcast_to(at_least, len(uv))
+
+    def search(first: int) -> list[float]:
+        return [_least(morph, uv[k], start[k], tolerance) for k in range(first, min(first + CHUNK, len(uv)))]
+
+    found = yield from parallel.steps(search, range(0, len(uv), CHUNK), threads)
+    return np.concatenate(found) if found else np.empty(0)
+
+
+def _least(morph: Morph, uv: np.ndarray, start: float, tolerance: float) -> float:
+    swells = np.append(start, np.arange(np.floor(start * LEVELS) + 1, LEVELS + 1) / LEVELS)
+    linear, translation = family(morph, np.column_stack([np.full((len(swells), 2), uv), swells]))
+    for k, swell in enumerate(swells):
+        if decide_column(linear[k], translation[k : k + 1], tolerance, False)[0][0] == Connectedness.CONNECTED:
+            return float(swell)
+    return NEVER
+
+
+def least_swell_field_steps(
+    morph: Morph, u: np.ndarray, v: np.ndarray, tolerance: float, levels: int = 16, threads: int | None = None
+) -> Generator[float, None, np.ndarray]:
+    """Least swell (V, U) over a grid, to the next of `levels`; infinite where there is no attractor; in steps."""
+    swells = np.arange(levels + 1) / levels
+    linear = np.ascontiguousarray(morph.linear(u[:, None, None], swells[:, None]))
+    linear = linear.reshape(len(u), levels + 1, morph.count, 4)
+    translations = np.ascontiguousarray(morph.translation(v[:, None]))
+
+    def column(k: int) -> np.ndarray:
+        least = np.full(len(v), NEVER)
+        still = np.arange(len(v))
+        for level, swell in enumerate(swells):
+            state = decide_column(linear[k, level], translations[still], tolerance, False)[0]
+            least[still[state == Connectedness.CONNECTED]] = swell
+            if level == 0:
+                least[still[state == Connectedness.NO_ATTRACTOR]] = np.inf
+            still = still[(state != Connectedness.CONNECTED) & (state != Connectedness.NO_ATTRACTOR)]
+            if len(still) == 0:
+                break
+        return least
+
+    columns = yield from parallel.steps(column, range(len(u)), threads)
+    return np.stack(columns, axis=1)
+
+
+def envelope(needed: np.ndarray, spacing: int) -> tuple[np.ndarray, np.ndarray]:
+    """Keys of a smooth curve that is nowhere below `needed`.
+
+    A curve without overshoot through keys each as high as anything up to both its neighbours cannot dip below. The
+    ends keep their own values, so near them keys are added where the curve would be too low.
+
+    Parameters
+    ----------
+    needed : (F,)
+        Least swell of each frame.
+    spacing : int
+        Frames between keys.
+
+    Returns
+    -------
+    frame : (K,) int
+    swell : (K,)
+    """
+    last = len(needed) - 1
+    keys = {0: needed[0], last: needed[last]}
+    if not needed.any():
+        return np.array([0, last]), np.array([needed[0], needed[last]])
+    for frame in range(spacing, last - spacing // 2, spacing):
+        keys[frame] = needed[max(1, frame - spacing) : min(last, frame + spacing + 1)].max()
+    for frame in range(1, last):
+        frames = np.array(sorted(keys))
+        swells = np.array([keys[k] for k in frames])
+        if curve_at(frames, swells, np.array([frame]))[0] < needed[frame] - 1e-9:
+            keys[frame] = needed[frame]
+    frames = np.array(sorted(keys))
+    swells = np.array([keys[k] for k in frames])
+    # A key level with both its neighbours changes nothing.
+    level = np.zeros(len(frames), dtype=bool)
+    level[1:-1] = (swells[1:-1] == swells[:-2]) & (swells[1:-1] == swells[2:])
+    return frames[~level], swells[~level]
+
+
+def slopes(times: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Slopes (K,) at keys of a curve that does not overshoot: harmonic means of both sides (Fritsch & Butland 1984)."""
+    secants = np.diff(values) / np.diff(times)
+    found = np.zeros(len(values))
+    before, after = secants[:-1], secants[1:]
+    rising = before * after > 0
+    found[1:-1][rising] = 2 * before[rising] * after[rising] / (before[rising] + after[rising])
+    return found
+
+
+def curve_at(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """The curve of `slopes` through keys (K,), at the times `at` (F,)."""
+    slope = slopes(times, values)
+    k = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
+    span = times[k + 1] - times[k]
+    x = (at - times[k]) / span
+    controls = (values[k], values[k] + slope[k] * span / 3, values[k + 1] - slope[k + 1] * span / 3, values[k + 1])
+    return bezier(*controls, x)
+
+
+def bezier(p0: np.ndarray, p1: np.ndarray, p2: np.ndarray, p3: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Cubic with control values p0 to p3, at x in [0, 1]; in powers of x, so that equal controls give just themselves."""
+    return p0 + x * (3 * (p1 - p0) + x * (3 * (p0 - 2 * p1 + p2) + x * (p3 - p0 + 3 * (p1 - p2))))
