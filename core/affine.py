@@ -138,13 +138,13 @@ def polar_by_iteration(linear: np.ndarray, tolerance: float = 1e-15) -> tuple[np
         If `linear` is singular.
     """
     orthogonal = np.array(linear, dtype=float)
-    for iteration in range(1, 201):
+    iterations, change = 0, np.inf
+    while change > tolerance * np.abs(orthogonal).max() and iterations < 200:
         following = (orthogonal + np.linalg.inv(orthogonal).T) / 2
         change = np.abs(following - orthogonal).max()
         orthogonal = following
-        if change <= tolerance * np.abs(orthogonal).max():
-            break
-    return orthogonal, np.linalg.inv(orthogonal) @ linear, iteration
+        iterations += 1
+    return orthogonal, np.linalg.inv(orthogonal) @ linear, iterations
 
 
 def to_parameters(maps: np.ndarray) -> np.ndarray:

@@ -124,8 +124,8 @@ class IFS:
         worst = int(np.argmax(radii))
         if radii[worst] >= 1 - 1e-9:
             raise IFSError(
-                f"{self._called} map {worst + 1} does not contract: its norm is {self.norms[worst]:.4g} and it scales by "
-                f"{radii[worst]:.4g} along one direction; scale it below 1."
+                f"{self._called} map {worst + 1} does not contract: its norm is {self.norms[worst]:.4g} and applied "
+                f"again and again it grows by {radii[worst]:.4g} each time; scale it below 1."
             )
         worst = int(np.argmax(self.norms))
         found = (

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -175,7 +176,7 @@ def _draw_line(picture: np.ndarray, points: np.ndarray) -> None:
     height, width = picture.shape[:2]
     rows, columns = np.mgrid[:height, :width]
     nearest = np.full((height, width), np.inf)
-    for start, end in zip(points[:-1], points[1:], strict=True):
+    for start, end in pairwise(points):
         low = np.floor(np.minimum(start, end)).astype(int) - 4
         high = np.ceil(np.maximum(start, end)).astype(int) + 5
         box = (slice(max(low[1], 0), max(high[1], 0)), slice(max(low[0], 0), max(high[0], 0)))

@@ -25,7 +25,7 @@ SLACK = 1e-12
 """Rounding allowed in a distance, so that pieces are called apart only when they are."""
 
 DISC_BUDGET = 256
-POLYGON_BUDGET = 20_000
+POLYGON_BUDGET = 4000
 """Pairs of pieces looked at in the first stage, which knows discs only, and in the second."""
 
 STACK = 4096
@@ -35,7 +35,7 @@ GAP_PAIRS = 6000
 GAP_PRECISION = 0.05
 """The gap is measured until pieces are this small beside their distance."""
 
-POLYGON_STEPS = 8
+POLYGON_STEPS = 4
 
 
 @njit(nogil=True, cache=True)

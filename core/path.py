@@ -245,7 +245,7 @@ def _route_inside(morph: Morph, locus: Locus, tolerance: float) -> np.ndarray | 
             return _simplified(morph, points, tolerance)
         for edge in failing:
             step = np.array([rows[edge + 1] - rows[edge], columns[edge + 1] - columns[edge]])
-            k = int(np.flatnonzero((STEPS == step).all(axis=1))[0])
+            k = int(np.flatnonzero((step == STEPS).all(axis=1))[0])
             closed[rows[edge], columns[edge], k] = True
             closed[rows[edge + 1], columns[edge + 1], 7 - k] = True
     return None

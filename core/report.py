@@ -138,7 +138,7 @@ def check_frames_steps(
 
 
 def family(morph: Morph, uv_swell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Linear parts (F, N, 4) and translations (F, N, 2) of the morph at u, v, swell (F, 3), as the kernels take them."""
+    """Linear parts (F, N, 4) and translations (F, N, 2) of a morph at u, v, swell (F, 3), as kernels take them."""
     u, v, swell = uv_swell.T[..., None]
     linear = np.ascontiguousarray(morph.linear(u, swell)).reshape(len(uv_swell), morph.count, 4)
     return linear, np.ascontiguousarray(morph.translation(v))
