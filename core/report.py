@@ -62,6 +62,10 @@ class FrameCheck:
         """The mean swell over the frames."""
         return float(self.uv_swell[:, 2].mean())
 
+    def text(self) -> str:
+        """What was found, in a plain sentence or two, a line each."""
+        return "\n".join([_sentence("The keyed path", self), *_swell_sentences(self)])
+
 
 @dataclass(frozen=True, eq=False)
 class PathReport:
@@ -90,8 +94,7 @@ class PathReport:
         lines = [_sentence("The path", self.path)]
         if self.reason:
             lines.append(self.reason)
-        if self.path.most_swell > 0:
-            lines.append(f"Swell: {self.path.most_swell:.2f} at most, {self.path.mean_swell:.3f} on average.")
+        lines += _swell_sentences(self.path)
         if self.method != "straight unswollen":
             lines.append(_sentence("The straight line without swell", self.straight))
         if self.flips:
@@ -158,3 +161,9 @@ def _sentence(subject: str, check: FrameCheck) -> str:
         parts.append(f"{check.count(Connectedness.NO_ATTRACTOR)} without an attractor")
     found = ", ".join(parts) if parts else "all in one piece"
     return f"{subject}: {frames} frames, {found}, at 1/{pixels} of the shape's size."
+
+
+def _swell_sentences(check: FrameCheck) -> list[str]:
+    if check.most_swell == 0:
+        return []
+    return [f"Swell: {check.most_swell:.2f} at most, {check.mean_swell:.3f} on average."]
