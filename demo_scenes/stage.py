@@ -1,0 +1,67 @@
+"""An empty Blender with the extension of this checkout, and the steps that the scenes have in common.
+
+Everything is done through the extension's operators and properties, as in Blender's window.
+"""
+
+import importlib
+import os
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = "bl_ext.system.ifs_morph"
+FPS = 30
+
+
+def start():
+    """Start Blender as a module, with this checkout for an extension; returns the extension's package."""
+    extensions = ROOT / "out" / "blender" / "extensions"
+    link = extensions / "system" / "ifs_morph"
+    link.parent.mkdir(parents=True, exist_ok=True)
+    if not link.is_symlink():
+        link.symlink_to(ROOT, target_is_directory=True)
+    user = ROOT / "out" / "blender" / "user"
+    user.mkdir(exist_ok=True)
+    # Both are read once, when Blender is first imported.
+    os.environ["BLENDER_SYSTEM_EXTENSIONS"] = str(extensions)
+    os.environ["BLENDER_USER_RESOURCES"] = str(user)
+    import addon_utils
+    import bpy
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    if addon_utils.enable(PACKAGE) is None:
+        raise SystemExit("Blender could not enable the extension: see the error above.")
+    return importlib.import_module(PACKAGE)
+
+
+def stop():
+    """Disable the extension: Blender does not end well while a handler is registered."""
+    import addon_utils
+
+    addon_utils.disable(PACKAGE)
+
+
+def add_morph(kind: str, initial: str, final: str, frames: int, size: int):
+    """Open an empty file with one morph object between two shapes of the library; returns the object."""
+    import bpy
+
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, frames
+    scene.render.fps = FPS
+    scene.render.resolution_x = scene.render.resolution_y = size
+    scene.render.engine = "CYCLES"
+    # Colors as they are; a film's response would gray the whites.
+    scene.view_settings.view_transform = "Standard"
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = 0.0, 0.0, 0.0
+    bpy.ops.object.ifs_morph_add(kind=kind)
+    bpy.ops.ifs_morph.load_shape(end="INITIAL", shape=initial)
+    bpy.ops.ifs_morph.load_shape(end="FINAL", shape=final)
+    return bpy.context.object
+
+
+def color_maps(owner, colors) -> None:
+    """Give the maps of both shapes of an object the same colors."""
+    for shape in (owner.ifs_morph.initial, owner.ifs_morph.final):
+        for item, color in zip(shape.maps, colors, strict=True):
+            item.color = color

@@ -1,0 +1,20 @@
+"""Terdragon to gasket: two shapes between which no connected path exists in (u,v), joined by a little swell.
+
+With the maps paired as they stand, the locus is made of vertical bands with a gap between. The maps swell on the way
+just enough to close it.
+"""
+
+from .stage import add_morph
+
+TITLE = "Terdragon to gasket"
+
+
+def build(frames: int, size: int):
+    """Build the scene and return the morph object; its path is still to be planned."""
+    import bpy
+
+    owner = add_morph("IMAGE", "terdragon", "gasket", frames, size)
+    owner.ifs_morph.output.mode = "DENSITY"
+    owner.ifs_morph.output.resolution = 2 * size, 2 * size
+    bpy.context.scene.cycles.samples = 8
+    return owner
