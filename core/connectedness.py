@@ -89,7 +89,7 @@ def index_buffer(
     iterations : int, optional
         Points plotted; 10 for each pixel of the square by default.
     phases : ((float, float), ...)
-        Shifts of the window in pixels; the edges found with any of them count.
+        Shifts of the window in pixels, taken modulo 1; the edges found with any of them count.
     early_exit : bool
         Stop when one component is left. The paper plots all points and sums the powers of the adjacency matrix, with
         the same verdict: all entries of that sum are positive if and only if there is one component.
@@ -113,12 +113,12 @@ def index_buffer(
             np.ascontiguousarray(ifs.maps).reshape(-1, 6),
             np.cumsum(ifs.weights),
             ifs.fixed_points[0].copy(),
-            np.array([left - phase[0] * pixel, bottom - phase[1] * pixel]),
+            np.array([left - phase[0] % 1 * pixel, bottom - phase[1] % 1 * pixel]),
             pixel,
             np.zeros((resolution + 2, resolution + 2), dtype=np.int64),
             int(iterations or 10 * resolution**2),
             early_exit,
-            seed,
+            2 * seed + 1,  # a xorshift generator never leaves zero
             labels,
         )
     if labels.any():

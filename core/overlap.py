@@ -35,6 +35,9 @@ GAP_PAIRS = 6000
 GAP_PRECISION = 0.05
 """The gap is measured until pieces are this small beside their distance."""
 
+TIE = 1e-9
+"""Weight of a pair's size in the order of the gap search."""
+
 POLYGON_STEPS = 4
 
 
@@ -75,17 +78,19 @@ def distance(one, other):
 
 
 @njit(nogil=True, cache=True)
-def polygons_apart(one, other, corners):
-    """Whether a line parts the images of the outer polygon: a few steps of Gilbert's algorithm (1966).
+def polygon_distance(one, other, corners, enough):
+    """Lower bound of the distance of the images of the outer polygon: a few steps of Gilbert's algorithm (1966).
 
-    The point (x, y) of the difference of the two polygons walks towards the origin; a corner that lies beyond the
-    origin in no direction proves that the origin, hence a common point, is outside.
+    The point (x, y) of the difference of the two polygons walks towards the origin; the line across its direction
+    through the furthest corner parts the origin from all of the difference, or does not. Stops at a bound above
+    `enough`; negative where the polygons may meet.
     """
     x, y = other[4] - one[4], other[5] - one[5]
+    bound = -np.inf
     for _ in range(POLYGON_STEPS):
         length = math.sqrt(x * x + y * y)
         if length <= SLACK:
-            return False
+            return bound
         p, q = one[0] * x + one[2] * y, one[1] * x + one[3] * y
         r, s = other[0] * x + other[2] * y, other[1] * x + other[3] * y
         furthest, nearest, at_one, at_other = -np.inf, np.inf, 0, 0
@@ -97,8 +102,9 @@ def polygons_apart(one, other, corners):
             if value < nearest:
                 nearest, at_other = value, k
         separation = nearest - furthest + x * (other[4] - one[4]) + y * (other[5] - one[5])
-        if separation > SLACK * length:
-            return True
+        bound = max(bound, separation / length)
+        if bound > enough:
+            return bound
         u, v = corners[at_one, 0], corners[at_one, 1]
         g, h = corners[at_other, 0], corners[at_other, 1]
         corner_x = other[0] * g + other[1] * h + other[4] - one[0] * u - one[1] * v - one[4]
@@ -107,13 +113,13 @@ def polygons_apart(one, other, corners):
         dx, dy = corner_x - x, corner_y - y
         squared = dx * dx + dy * dy
         if squared <= SLACK * SLACK:
-            return False
+            return bound
         along = -(x * dx + y * dy) / squared
         if along <= 0:
-            return False
+            return bound
         along = min(along, 1.0)
         x, y = x + along * dx, y + along * dy
-    return False
+    return bound
 
 
 @njit(nogil=True, cache=True)
@@ -155,7 +161,7 @@ def pair_test(linear, unit, i, j, tolerance, corners, budget, first, second):
         top -= 1
         one[:] = first[top]
         other[:] = second[top]
-        if corners.shape[0] > 0 and polygons_apart(one, other, corners):
+        if corners.shape[0] > 0 and polygon_distance(one, other, corners, SLACK) > SLACK:
             continue
         if one[6] + other[6] <= tolerance:
             return MEET
@@ -306,7 +312,8 @@ def measure_gap(linear, unit, tolerance, labels, first, second, ends, key, order
     """Bracket of the gap: the longest edge of the minimum spanning tree over the distances of attractorlets.
 
     Kruskal's algorithm on edges that are known by bounds only: one heap holds pairs of pieces of all pairs of
-    attractorlets, the least lower bound on top; that pair is split until it is small, and then is an edge.
+    attractorlets, the least lower bound on top; that pair is split until it is small, and then is an edge. Discs
+    bound a pair when it enters the heap, the outer polygon when it first comes out.
 
     Parameters
     ----------
@@ -314,7 +321,7 @@ def measure_gap(linear, unit, tolerance, labels, first, second, ends, key, order
         As in `pair_test`.
     labels : (N,)
         Components; written over.
-    first, second, ends, key, order : (GAP_PAIRS, 7) twice, (GAP_PAIRS, 2), (GAP_PAIRS,) twice
+    first, second, ends, key, order : (GAP_PAIRS, 7) twice, (GAP_PAIRS, 3), (GAP_PAIRS,) twice
         Work space.
 
     Returns
@@ -323,7 +330,8 @@ def measure_gap(linear, unit, tolerance, labels, first, second, ends, key, order
         In units of the enclosing radius.
     """
     count = linear.shape[0]
-    child = np.empty(7)
+    one, other = np.empty(7), np.empty(7)
+    _, corners = outer_polygon(linear, unit, 1.0, enclosure.DIRECTIONS, 1e-3)
     for i in range(count):
         labels[i] = i
     used = length = 0
@@ -332,13 +340,8 @@ def measure_gap(linear, unit, tolerance, labels, first, second, ends, key, order
             set_piece(linear, unit, i, first[used])
             set_piece(linear, unit, j, second[used])
             ends[used, 0], ends[used, 1] = i, j
-            room = first[used, 6] + second[used, 6]
-            # Among pairs that may meet, the small ones first: else all large ones would be split before any is decided.
-            key[used] = max(distance(first[used], second[used]) - room, 0.0) + 1e-9 * room
-            order[length] = used
-            length += 1
+            length = push_pair(first, second, ends, key, order, used, length, 0.0)
             used += 1
-            sift_up(order, key, length - 1)
     low = high = 0.0
     components = count
     while components > 1:
@@ -351,28 +354,50 @@ def measure_gap(linear, unit, tolerance, labels, first, second, ends, key, order
             continue
         apart = distance(first[pair], second[pair])
         room = first[pair, 6] + second[pair, 6]
+        bound = max(apart - room, 0.0)
+        if ends[pair, 2] == 0:
+            bound = max(bound, polygon_distance(first[pair], second[pair], corners, np.inf))
+            ends[pair, 2] = 1
+            if bound + TIE * room > key[pair]:
+                key[pair] = bound + TIE * room
+                order[length] = pair
+                length += 1
+                sift_up(order, key, length - 1)
+                continue
+        bound = max(bound, key[pair] - TIE * room)
         if room <= max(tolerance, GAP_PRECISION * apart) or used + count > first.shape[0]:
             join(labels, i, j)
             components -= 1
-            low, high = max(low, apart - room - SLACK), max(high, apart + room)
+            low, high = max(low, bound - SLACK), max(high, apart + room)
             continue
+        one[:] = first[pair]
+        other[:] = second[pair]
         for k in range(count):
-            if first[pair, 6] >= second[pair, 6]:
-                set_child(linear, unit, k, first[pair], child)
-                first[used] = child
-                second[used] = second[pair]
+            # The first part takes the place of the whole.
+            at = pair if k == 0 else used
+            used += k > 0
+            first[at], second[at] = one, other
+            if one[6] >= other[6]:
+                set_child(linear, unit, k, one, first[at])
             else:
-                set_child(linear, unit, k, second[pair], child)
-                first[used] = first[pair]
-                second[used] = child
-            ends[used, 0], ends[used, 1] = i, j
-            room = first[used, 6] + second[used, 6]
-            key[used] = max(distance(first[used], second[used]) - room, 0.0) + 1e-9 * room
-            order[length] = used
-            length += 1
-            used += 1
-            sift_up(order, key, length - 1)
+                set_child(linear, unit, k, other, second[at])
+            ends[at, 0], ends[at, 1] = i, j
+            length = push_pair(first, second, ends, key, order, at, length, bound)
     return low, high
+
+
+@njit(nogil=True, cache=True)
+def push_pair(first, second, ends, key, order, pair, length, at_least):
+    """Put a pair of pieces into the heap of `measure_gap`, by its discs; the heap's new length.
+
+    Among pairs that may meet the small ones come first: else all large ones would be split before any is decided.
+    """
+    room = first[pair, 6] + second[pair, 6]
+    key[pair] = max(distance(first[pair], second[pair]) - room, at_least) + TIE * room
+    ends[pair, 2] = 0
+    order[length] = pair
+    sift_up(order, key, length)
+    return length + 1
 
 
 @njit(nogil=True, cache=True)
@@ -412,7 +437,7 @@ def decide_column(linear, translations, tolerance, with_gap):
         gap[:] = 0.0
         return state, gap, labels
     first, second = np.empty((GAP_PAIRS, 7)), np.empty((GAP_PAIRS, 7))
-    ends, order = np.empty((GAP_PAIRS, 2), np.int64), np.empty(GAP_PAIRS, np.int64)
+    ends, order = np.empty((GAP_PAIRS, 3), np.int64), np.empty(GAP_PAIRS, np.int64)
     key = np.empty(GAP_PAIRS)
     unit = np.empty((count, 2))
     scratch = np.empty(count, np.int64)
@@ -427,6 +452,6 @@ def decide_column(linear, translations, tolerance, with_gap):
             gap[node, 0], gap[node, 1] = 0.0, tolerance
         elif with_gap:
             low, high = measure_gap(linear, unit, tolerance, scratch, first, second, ends, key, order)
-            gap[node, 0] = low / 2 if state[node] == DISCONNECTED else 0.0
+            gap[node, 0] = max(low, SLACK) / 2 if state[node] == DISCONNECTED else 0.0
             gap[node, 1] = high / 2
     return state, gap, labels

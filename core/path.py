@@ -43,6 +43,9 @@ REPLANS = 60
 SAMPLES_PER_NODE = 4
 """How densely straight segments are tested, beside every quarter of a frame."""
 
+SWELL_ATTEMPTS = 10
+"""How often the swell curve is raised where a frame fails."""
+
 SWELL_KEYS = 24
 """Most keys of a swell curve before those that single frames need."""
 
@@ -341,18 +344,19 @@ def _swell_steps(
     """Keys of the least smooth swell that holds every frame together, zero at both ends."""
     times = np.arange(frames) / (frames - 1)
     uv = keys.at(times)
-    needed = yield from least_swell_steps(morph, uv, tolerance, 0.0, threads)
+    needed = yield from _part(least_swell_steps(morph, uv, tolerance, 0.0, threads), 0.0, 0.5)
     needed = _zero_at_ends(needed)
-    for attempt in range(10):
+    for attempt in range(SWELL_ATTEMPTS):
         if not needed.any():
             return _no_swell()
         frame, swell = envelope(needed, max(2, (frames - 1) // SWELL_KEYS))
         swell_keys = _smooth_keys(frame / (frames - 1), swell)
         # More swell than the least can fail; there the next that works is asked for.
         above = np.clip(swell_keys.at(times), 0.0, 1.0)
-        raised = yield from least_swell_steps(morph, uv, tolerance, above, threads)
+        share = 0.5 + 0.5 * attempt / SWELL_ATTEMPTS
+        steps = least_swell_steps(morph, uv, tolerance, above, threads)
+        raised = yield from _part(steps, share, share + 0.5 / SWELL_ATTEMPTS)
         raised = _zero_at_ends(raised)
-        yield (attempt + 1) / 10
         failing = raised > above + 1e-12
         failing[[0, -1]] = False
         if not failing.any():
