@@ -1,0 +1,131 @@
+"""The thread pool: results in order, any number of threads, and nothing left running."""
+
+import threading
+import time
+
+import pytest
+
+from core import parallel
+from core.parallel import Cancelled, finish, run, steps, thread_count
+
+every_count = pytest.mark.parametrize("threads", [1, 2, 3, 7, None])
+
+
+def uneven(k):
+    """Square a number, the earlier ones slowest, so that a wrong order would show."""
+    time.sleep(0.003 * (k % 4 == 0))
+    return k * k
+
+
+@every_count
+def test_run_returns_results_in_the_order_of_the_chunks(threads):
+    assert run(uneven, range(25), threads) == [k * k for k in range(25)]
+
+
+@every_count
+def test_steps_return_results_in_the_order_of_the_chunks(threads):
+    assert finish(steps(uneven, range(25), threads)) == [k * k for k in range(25)]
+
+
+@every_count
+@pytest.mark.parametrize("chunks", [[], [3]])
+def test_few_chunks(threads, chunks):
+    assert run(uneven, chunks, threads) == [k * k for k in chunks]
+    assert finish(steps(uneven, chunks, threads)) == [k * k for k in chunks]
+
+
+@every_count
+def test_every_chunk_is_done_once(threads):
+    done = []
+    finish(steps(done.append, range(40), threads))
+    assert sorted(done) == list(range(40))
+
+
+@every_count
+def test_progress_rises_to_one(threads):
+    told = []
+    finish(steps(lambda k: time.sleep(0.01), range(30), threads), told.append)
+    assert told[-1] == 1
+    assert all(0 < share <= 1 for share in told)
+    assert all(before < after for before, after in zip(told, told[1:], strict=False))
+    assert len(told) > 1
+
+
+@every_count
+def test_cancel_leaves_nothing_running_and_no_more_is_done(threads):
+    before = threading.active_count()
+    done, told = [], []
+
+    def work(k):
+        time.sleep(0.01)
+        done.append(k)
+
+    def stop_at_once(share):
+        told.append(share)
+        return False
+
+    with pytest.raises(Cancelled):
+        finish(steps(work, range(1000), threads), stop_at_once)
+    assert threading.active_count() == before
+    assert len(told) == 1
+    count = len(done)
+    assert count < 1000
+    time.sleep(0.05)
+    assert len(done) == count
+
+
+def test_cancel_closes_the_generator():
+    closed = []
+
+    def generator():
+        try:
+            yield 0.5
+            yield 1.0
+        finally:
+            closed.append(True)
+
+    with pytest.raises(Cancelled):
+        finish(generator(), lambda share: False)
+    assert closed == [True]
+
+
+@pytest.mark.parametrize("answer", [None, True, 0])
+def test_only_false_cancels(answer):
+    assert finish(steps(uneven, range(3), 1), lambda share: answer) == [0, 1, 4]
+
+
+@pytest.mark.parametrize("threads", [2, 5])
+def test_no_thread_lives_between_two_steps(threads):
+    before = threading.active_count()
+    for _ in steps(lambda k: time.sleep(0.01), range(40), threads):
+        assert threading.active_count() == before
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("way", [run, lambda *arguments: finish(steps(*arguments))])
+def test_an_error_in_a_chunk_reaches_the_caller(threads, way):
+    before = threading.active_count()
+
+    def fail(k):
+        if k == 5:
+            raise ZeroDivisionError(k)
+        return k
+
+    with pytest.raises(ZeroDivisionError):
+        way(fail, range(20), threads)
+    assert threading.active_count() == before
+
+
+def test_chunks_run_at_once_on_threads():
+    meeting = threading.Barrier(3, timeout=10)
+    run(lambda k: meeting.wait(), range(3), 3)
+    finish(steps(lambda k: meeting.wait(), range(3), 3))
+
+
+def test_thread_count(monkeypatch):
+    assert thread_count(5) == 5
+    assert thread_count(0) == thread_count(-3) == 1
+    assert thread_count() >= 1
+    monkeypatch.delattr(parallel.os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(parallel.os, "cpu_count", lambda: None)
+    assert thread_count() == 1
