@@ -1,0 +1,260 @@
+"""Sets of points that stand for a piece of the attractor, at any size from a fraction of a pixel to many pixels.
+
+A picture is drawn by putting such a set under each word of a coarse cut. The set for one size is made of those for
+smaller sizes, put under the words of a short cut and thinned out on a grid of cells, so that it never holds more points
+than its cells need, however much the pieces overlap. Sizes are half an octave apart. All points are in the unit disc
+that holds the attractor.
+
+There are two ways of thinning. *Outlines* keep the points of a cell that reach furthest in four directions: they tell
+best which pixels a piece touches, and they truly belong to the attractor. *Measures* keep one point a cell, at the
+centre of its mass and with all of it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from .words import MASS, SIZE, WORD_MASS, cumulated, cut_words, grown
+
+SIZES_PER_OCTAVE = 2
+
+LARGEST_GRID = 512
+"""Cells along each side of a piece at most; a larger piece gets larger cells."""
+
+HULL_ROUNDS = 40
+"""Rounds of `hull_points`; what a round adds shrinks as the maps do."""
+
+INSET = 0.005
+"""How far the points of the smallest outline are drawn in, as a share of its size. A piece that ends where a pixel does
+then stays out of the next pixel, rather than get there by rounding."""
+
+TIE = 1e-3
+"""A point must reach this share of a cell further to replace another: rounding must not decide between the two."""
+
+
+class PointSets(NamedTuple):
+    """Sets of points for pieces of all sizes.
+
+    Attributes
+    ----------
+    smallest : float
+        Size of set 0 in pixels; set k is for the size ``smallest * 2 ** (k / SIZES_PER_OCTAVE)``.
+    start : (K + 1,)
+        Set k has the points from start[k] to start[k + 1].
+    x, y : (P,) float32
+    masses : (P,)
+        Of measures: those of a set add up to 1.
+    """
+
+    smallest: float
+    start: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    masses: np.ndarray
+
+    def nearest(self, words: np.ndarray) -> np.ndarray:
+        """Index (M,) of the set for each of `words` (M, 9) in pixels."""
+        return nearest_sets(words, 1.0, self.smallest, len(self.start) - 1)
+
+
+def outlines(
+    maps: np.ndarray, norms: np.ndarray, cell: float, smallest: float, largest: float, ratio: float
+) -> PointSets:
+    """Sets of points of the attractor that tell which pixels a piece touches.
+
+    Parameters
+    ----------
+    maps, norms
+        As `words.cut_words` takes them.
+    cell : float
+        Side of a cell, in pixels.
+    smallest, largest : float
+        Sizes of the first set and, about, of the last, in pixels.
+    ratio : float
+        Each set is made of ones that are smaller by this ratio at least; above the square root of 2.
+    """
+    a, b, e, c, d, f = maps[0]
+    fixed = np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
+    hull = hull_points(maps, fixed)
+    hull += INSET * (hull.mean(axis=0) - hull)
+    return _sets(maps, norms, np.zeros(len(maps) + 1), cell, smallest, largest, ratio, hull, False)
+
+
+def measures(
+    maps: np.ndarray,
+    norms: np.ndarray,
+    weights: np.ndarray,
+    cell: float,
+    smallest: float,
+    largest: float,
+    ratio: float,
+) -> PointSets:
+    """Sets of points with masses that stand for the measure that `weights` (N,) give; otherwise as `outlines`."""
+    # The centre of mass of the attractor is the mean of those of its parts: m = sum of p_i w_i(m).
+    a, b, e, c, d, f = weights @ maps
+    center = np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
+    return _sets(maps, norms, cumulated(weights), cell, smallest, largest, ratio, np.array([[*center, 1.0]]), True)
+
+
+def _sets(maps, norms, borders, cell, smallest, largest, ratio, seed, measure) -> PointSets:
+    count = max(round(SIZES_PER_OCTAVE * math.log2(largest / smallest)), 0) + 1
+    start, points = fill_sets(maps, norms, borders, cell, smallest, count, ratio, seed, measure)
+    x, y = (np.ascontiguousarray(points[:, k], dtype=np.float32) for k in (0, 1))
+    return PointSets(smallest, start, x, y, points[:, 2])
+
+
+@njit(nogil=True, cache=True)
+def nearest_sets(words, scale, smallest, count):
+    """Index (M,) of the one among `count` sets that is nearest by ratio to the size of each word times `scale`."""
+    nearest = np.zeros(words.shape[0], np.int64)
+    for w in range(words.shape[0]):
+        size = scale * words[w, SIZE]
+        if size > smallest:
+            nearest[w] = min(int(SIZES_PER_OCTAVE * math.log2(size / smallest) + 0.5), count - 1)
+    return nearest
+
+
+@njit(nogil=True, cache=True)
+def hull_points(maps, point):
+    """Points of the attractor that nearly reach furthest in eight directions.
+
+    The images of the furthest points of the attractor hold its furthest points: start with eight times one point of
+    the attractor, and replace them by the furthest images of all, again and again.
+
+    Parameters
+    ----------
+    maps : (N, 6)
+    point : (2,)
+        In the attractor, such as a map's fixed point.
+
+    Returns
+    -------
+    (8, 3)
+        x, y and a mass of one eighth.
+    """
+    points, previous = np.empty((8, 3)), np.empty((8, 3))
+    for k in range(8):
+        points[k, 0], points[k, 1], points[k, 2] = point[0], point[1], 1 / 8
+    for _ in range(HULL_ROUNDS):
+        for k in range(8):
+            previous[k, 0], previous[k, 1] = points[k, 0], points[k, 1]
+        for k in range(8):
+            cos, sin = math.cos(math.pi * k / 4), math.sin(math.pi * k / 4)
+            furthest = -np.inf
+            for i in range(maps.shape[0]):
+                for j in range(8):
+                    x = maps[i, 0] * previous[j, 0] + maps[i, 1] * previous[j, 1] + maps[i, 2]
+                    y = maps[i, 3] * previous[j, 0] + maps[i, 4] * previous[j, 1] + maps[i, 5]
+                    if cos * x + sin * y > furthest + TIE:
+                        furthest = cos * x + sin * y
+                        points[k, 0], points[k, 1] = x, y
+    return points
+
+
+@njit(nogil=True, cache=True)
+def fill_sets(maps, norms, borders, cell, smallest, count, ratio, seed, measure):
+    """`PointSets.start`, and a table (P, 3) of x, y and mass, made from set 0, `seed`, upwards."""
+    identity = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+    everywhere = np.array([-np.inf, -np.inf, np.inf, np.inf])
+    start = np.zeros(count + 1, np.int64)
+    start[1] = seed.shape[0]
+    points = grown(seed, 4096)
+    for k in range(1, count):
+        size = smallest * 2 ** (k / SIZES_PER_OCTAVE)
+        limit = max(2 / ratio, 2 * smallest / size)
+        words = cut_words(identity, maps, norms, 2.0, limit, borders, everywhere, np.iinfo(np.int64).max)
+        sides = min(max(math.ceil(size / cell), 1), LARGEST_GRID)
+        room = start[k] + sides * sides * (1 if measure else 4)
+        if room > points.shape[0]:
+            points = grown(points, 2 * room)
+        kinds = nearest_sets(words, size / 2, smallest, k)
+        if measure:
+            start[k + 1] = _thin_measure(words, kinds, start, points, start[k], sides)
+        else:
+            start[k + 1] = _thin_outline(words, kinds, start, points, start[k], sides)
+    return start, points[: start[count]]
+
+
+@njit(nogil=True, cache=True)
+def _thin_measure(words, kinds, start, points, end, sides):
+    """Append one point for each cell: the centre of mass of what falls into it. Returns the new end of `points`."""
+    member = np.zeros(sides * sides, np.int64)  # Zero for none: the first point of all is in set 0.
+    for w in range(words.shape[0]):
+        a, b, e, c, d, f = words[w, 0], words[w, 1], words[w, 2], words[w, 3], words[w, 4], words[w, 5]
+        share = words[w, MASS] / WORD_MASS
+        for j in range(start[kinds[w]], start[kinds[w] + 1]):
+            x, y = a * points[j, 0] + b * points[j, 1] + e, c * points[j, 0] + d * points[j, 1] + f
+            mass = share * points[j, 2]
+            cell = _cell(x, y, sides)
+            if member[cell] == 0:
+                member[cell] = end
+                points[end, 0], points[end, 1], points[end, 2] = x, y, mass
+                end += 1
+            elif mass > 0:
+                m = member[cell]
+                points[m, 2] += mass
+                points[m, 0] += (x - points[m, 0]) * mass / points[m, 2]
+                points[m, 1] += (y - points[m, 1]) * mass / points[m, 2]
+    return end
+
+
+@njit(nogil=True, cache=True)
+def _thin_outline(words, kinds, start, points, end, sides):
+    """Append up to four points for each cell, those furthest left, right, down and up. Returns the new end.
+
+    A cell that is surrounded by others gets the first only: there, a point a cell is as good as four.
+    """
+    count = sides * sides
+    furthest = np.empty((count, 4), np.float32)
+    spots = np.empty((count, 4, 2), np.float32)
+    tie = TIE * 2 / sides
+    for cell in range(count):
+        for k in range(4):
+            furthest[cell, k] = -np.inf
+    for w in range(words.shape[0]):
+        a, b, e, c, d, f = words[w, 0], words[w, 1], words[w, 2], words[w, 3], words[w, 4], words[w, 5]
+        for j in range(start[kinds[w]], start[kinds[w] + 1]):
+            x, y = a * points[j, 0] + b * points[j, 1] + e, c * points[j, 0] + d * points[j, 1] + f
+            cell = _cell(x, y, sides)
+            for k in range(4):
+                reach = (-x, x, -y, y)[k]
+                if reach > furthest[cell, k] + tie:
+                    furthest[cell, k] = reach
+                    spots[cell, k, 0], spots[cell, k, 1] = x, y
+    for cell in range(count):
+        if furthest[cell, 0] == -np.inf:
+            continue
+        for k in range(1 if _surrounded(furthest, cell, sides) else 4):
+            x, y = spots[cell, k, 0], spots[cell, k, 1]
+            known = False
+            for m in range(k):
+                known |= x == spots[cell, m, 0] and y == spots[cell, m, 1]
+            if not known:
+                points[end, 0], points[end, 1], points[end, 2] = x, y, 0.0
+                end += 1
+    return end
+
+
+@njit(nogil=True, cache=True)
+def _surrounded(furthest, cell, sides):
+    """Whether the eight cells about one all have points."""
+    row, column = cell // sides, cell % sides
+    if row == 0 or row == sides - 1 or column == 0 or column == sides - 1:
+        return False
+    for down in range(-1, 2):
+        for left in range(-1, 2):
+            if furthest[cell + down * sides + left, 0] == -np.inf:
+                return False
+    return True
+
+
+@njit(nogil=True, cache=True)
+def _cell(x, y, sides):
+    """Index of the cell of the square about the unit disc that holds a point."""
+    column = min(max(int((x + 1) / 2 * sides), 0), sides - 1)
+    row = min(max(int((y + 1) / 2 * sides), 0), sides - 1)
+    return row * sides + column

@@ -1,0 +1,235 @@
+"""Attractors to pixels: the set, its density, its attractorlets.
+
+The attractor is cut into words of a few dozen pixels, and under each a ready set of points is drawn (`pieces`,
+`drawing`). The cut and the points have fixed addresses, so a picture that is rendered again is the same to the bit, and
+one that moves does not flicker.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from . import chaos, drawing
+from .affine import compose
+from .ifs import IFS, Contractivity, IFSError
+from .pieces import measures, outlines
+from .words import LETTER, WORD_MASS, cumulated, cut_dimension, cut_words, unit_maps
+
+MODES = ("set", "density", "attractorlet")
+
+SAMPLES = {"set": 4.0, "density": 16.0, "attractorlet": 4.0}
+"""Points for each pixel of a filled shape, by default."""
+
+SAMPLES_RANGE = (1 / 16, 64.0)
+
+LEAST_CELL = 2**-2.5
+"""Side in pixels of the cells whose outlines are drawn, at least: a smaller one would hardly find a pixel more."""
+
+PIECE_CELLS = 48
+PIECE_RANGE = (16.0, 32.0)
+"""Size of the words that sets of points are drawn under: so many cells, but within a range in pixels."""
+
+SET_RATIO = 8.0
+SET_WORDS = 64.0
+"""A set of points is made of sets that are smaller by this ratio, or by less where more words than these would overlap."""
+
+OVERLAP = 16.0
+"""Words that may lie over one place of the picture. Where an attractor overlaps itself more, its words are made larger."""
+
+DIMENSION_LIMIT = 12.0
+"""Attractors whose cuts grow by a higher dimension (`words.dimension`) are left to the chaos game. One of its points
+costs as much as six of a set, but such attractors overlap themselves so often that sets of points are no gain."""
+
+CHAOS_POINTS = 16.0
+"""Points of the chaos game for each pixel of the picture, at least."""
+
+TOTAL_MASS = int(WORD_MASS) * drawing.POINT_MASS
+"""What the density of a whole attractor adds up to, however large the picture and however many the points: 2 ** 62."""
+
+Window = tuple[float, float, float, float]
+
+
+def render(
+    ifs: IFS,
+    size: tuple[int, int],
+    window: Window | None = None,
+    mode: str = "set",
+    samples: float | None = None,
+    threads: int | None = None,
+    norms: np.ndarray | None = None,
+) -> np.ndarray:
+    """Render an attractor.
+
+    Parameters
+    ----------
+    ifs : IFS
+    size : (width, height)
+        In pixels.
+    window : (x0, y0, x1, y1), optional
+        The part of the plane that the picture shows; by default all of the attractor, see `fit_window`.
+    mode : str
+        "set", "density" or "attractorlet".
+    samples : float, optional
+        Points for each pixel of a filled shape, held within `SAMPLES_RANGE`; by default `SAMPLES`. More points find more
+        of the pixels that the attractor only just touches, and place its density more finely.
+    threads : int, optional
+        By default one for each processor. The result is the same to the byte.
+    norms : (N,), optional
+        Upper bounds of the norms of the maps over a whole animation. Where the attractor is cut then depends on them
+        instead of on this very IFS, so that no pixel is found in one frame and lost in the next because of the cut.
+        Of no effect where one of them is 1 or more.
+
+    Returns
+    -------
+    (height, width)
+        Row 0 is the lowest. *Set*: float32, 1 where the attractor meets a pixel and 0 elsewhere. *Density*: int64, the
+        measure that the weights give, `TOTAL_MASS` of it for the whole attractor. *Attractorlet*: uint8, 0 where there
+        is none and 1 + i for attractorlet i, the last of those that meet the pixel.
+
+    Raises
+    ------
+    IFSError
+        If there is no attractor, or too many attractorlets to tell apart.
+    ValueError
+        If the size, the window, the mode or the norms make no sense.
+    """
+    width, height = _checked_size(size)
+    if mode not in MODES:
+        raise ValueError(f"There is no mode “{mode}”; choose one of {', '.join(MODES)}.")
+    if mode == "attractorlet" and ifs.count > 255:
+        raise IFSError(f"The IFS has {ifs.count} maps; at most 255 attractorlets can be told apart in a picture.")
+    x0, y0, x1, y1 = fit_window(ifs, size) if window is None else _checked_window(window)
+    samples = float(np.clip(SAMPLES[mode] if samples is None else samples, *SAMPLES_RANGE))
+    norms = _checked_norms(norms, ifs.count)
+
+    across, along = width / (x1 - x0), height / (y1 - y0)
+    maps, center, radius = unit_maps(ifs, least_radius=1e-9 / max(across, along))
+    root = np.array([radius * across, 0.0, (center[0] - x0) * across, 0.0, radius * along, (center[1] - y0) * along])
+    borders = cumulated(ifs.weights)
+    labels = np.arange(1, ifs.count + 1, dtype=np.uint8) if mode == "attractorlet" else np.ones(ifs.count, np.uint8)
+    canvas = np.zeros((height, width), np.int64 if mode == "density" else np.uint8)
+    dimension = cut_dimension(maps, norms)
+    if dimension > DIMENSION_LIMIT:
+        in_pixels = _conjugated(maps, root)
+        points = max(samples, CHAOS_POINTS) * width * height
+        if mode == "density":
+            chaos.deposit(canvas, in_pixels, borders, points, TOTAL_MASS, threads)
+        else:
+            chaos.mark(canvas, in_pixels, borders, labels, points, threads)
+    else:
+        side = math.sqrt(width * height)
+        extent = _extent(2 * radius * max(across, along), side, norms)
+        cell, piece, ratio = _resolution(mode, samples, dimension, extent, side)
+        # Half octaves below the extent, so that maps that scale by one or more of them lead from set to set exactly.
+        smallest = extent * 2 ** (round(2 * math.log2(cell / extent)) / 2)
+        shown = np.array([0.0, 0.0, width, height])
+        words = cut_words(root, maps, norms, extent, piece, borders, shown, np.iinfo(np.int64).max)
+        if mode == "density":
+            drawing.deposit(canvas, words, measures(maps, norms, ifs.weights, cell, smallest, piece, ratio), threads)
+        else:
+            letters = words[:, LETTER].astype(np.int64)
+            drawing.mark(canvas, words, labels[letters], outlines(maps, norms, cell, smallest, piece, ratio), threads)
+    return canvas.astype(np.float32) if mode == "set" else canvas
+
+
+def fit_window(shapes: IFS | Iterable[IFS], size: tuple[int, int], margin: float = 0.05) -> Window:
+    """The smallest window of a picture's proportions that shows all of some attractors.
+
+    Parameters
+    ----------
+    shapes : IFS or iterable of IFS
+        Such as the frames of a morph, so that the picture does not breathe. Those without an attractor are passed over.
+    size : (width, height)
+        Of the picture, in pixels.
+    margin : float
+        Least distance of the attractors from the border, as a share of the window.
+
+    Returns
+    -------
+    (x0, y0, x1, y1)
+
+    Raises
+    ------
+    IFSError
+        If none has an attractor.
+    """
+    width, height = _checked_size(size)
+    shapes = [shapes] if isinstance(shapes, IFS) else list(shapes)
+    bounds = np.array([ifs.bounds for ifs in shapes if ifs.contractivity == Contractivity.CONTRACTIVE])
+    if len(bounds) == 0:
+        for ifs in shapes:
+            ifs.require_attractor()
+        raise IFSError("There is no shape to fit the window to.")
+    low, high = bounds[:, :2].min(axis=0), bounds[:, 2:].max(axis=0)
+    center = (low + high) / 2
+    pixel = max((high - low) / (width, height)) / (1 - 2 * margin)
+    # An attractor that is a single point still wants a window about it.
+    pixel = pixel if pixel > 1e-12 * np.abs(center).max() else 1 / max(width, height)
+    half = np.array([width, height]) * pixel / 2
+    return (*(center - half).tolist(), *(center + half).tolist())
+
+
+def _resolution(mode: str, samples: float, dimension: float, extent: float, side: float) -> tuple[float, float, float]:
+    """Side of the cells, size of the words and ratio of the sets of points to make, from the dimension of the cut.
+
+    A filled shape, of dimension 2, gets cells of one `samples`-th of a pixel. A thinner one is all border, where points
+    tell more, and its cells are smaller: as many as a filled one would have in a picture of so many pixels.
+    """
+    cell = samples**-0.5
+    if mode != "density":
+        thin = min(max(dimension, 0.5), 2.0)
+        cell = max(min(side * (samples * side * side) ** (-1 / thin), cell), min(LEAST_CELL, cell))
+    cell = 2 ** (round(2 * math.log2(cell)) / 2)
+    piece = min(max(PIECE_CELLS * cell, PIECE_RANGE[0]), PIECE_RANGE[1])
+    ratio = SET_RATIO
+    if dimension > 2:
+        # Words of size s lie (extent / s) ** (dimension - 2) times over each other.
+        piece = max(piece, extent * math.exp(-math.log(OVERLAP) / (dimension - 2)))
+        ratio = max(min(ratio, math.exp(min(math.log(SET_WORDS) / (dimension - 2), 3))), 1.5)
+    return cell, piece, ratio
+
+
+def _extent(diameter: float, side: float, norms: np.ndarray) -> float:
+    """Size of the attractor in pixels, to cut it by; where the cut is fixed, rounded up to half octaves of the side.
+
+    So it stays the same as long as the attractor about fills the picture, as it does all through a morph.
+    """
+    if len(norms) == 0:
+        return diameter
+    return side * 2 ** (math.ceil(2 * math.log2(diameter / side)) / 2)
+
+
+def _conjugated(maps: np.ndarray, root: np.ndarray) -> np.ndarray:
+    """Maps (N, 6) in the coordinates that `root` leads to."""
+    root = root.reshape(2, 3)
+    back = np.concatenate([np.diag(1 / root.diagonal()), (-root[:, 2] / root.diagonal())[:, None]], axis=1)
+    return compose(compose(root, maps.reshape(-1, 2, 3)), back).reshape(-1, 6)
+
+
+def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
+    width, height = (int(side) for side in size)
+    if width < 1 or height < 1 or width * height >= 2**31:
+        raise ValueError(
+            f"A picture of {width} x {height} pixels cannot be made; use at least 1 x 1, and less than 2^31."
+        )
+    return width, height
+
+
+def _checked_window(window: Window) -> Window:
+    x0, y0, x1, y1 = (float(side) for side in window)
+    if not (np.isfinite([x0, y0, x1, y1]).all() and x0 < x1 and y0 < y1):
+        raise ValueError(f"The window {tuple(window)} is empty; give x0, y0, x1, y1 with x0 < x1 and y0 < y1.")
+    return x0, y0, x1, y1
+
+
+def _checked_norms(norms: np.ndarray | None, count: int) -> np.ndarray:
+    """Norms to cut by: those given, or none where words have to be measured."""
+    if norms is None:
+        return np.zeros(0)
+    norms = np.ascontiguousarray(norms, dtype=float)
+    if norms.shape != (count,) or not (norms >= 0).all():
+        raise ValueError(f"Norms must be {count} numbers, none negative, one for each map.")
+    return norms if norms.max() < 1 else np.zeros(0)
