@@ -24,8 +24,8 @@ def start():
     # Both are read once, when Blender is first imported.
     os.environ["BLENDER_SYSTEM_EXTENSIONS"] = str(extensions)
     os.environ["BLENDER_USER_RESOURCES"] = str(user)
+    import bpy  # isort: skip -- it brings the module below
     import addon_utils
-    import bpy
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     if addon_utils.enable(PACKAGE) is None:

@@ -47,10 +47,10 @@ def write_path(owner, path, frame_start: int, frame_end: int) -> None:
     span = frame_end - frame_start
     for axis, (data_path, index) in enumerate(CHANNELS[:2]):
         curve = compat.ensure_fcurve(owner, data_path, index)
-        values = keys.uv[:, axis], keys.handle_left[:, axis], keys.handle_right[:, axis]
+        values = keys.value[:, axis], keys.handle_left[:, axis], keys.handle_right[:, axis]
         _write_keys(curve, frame_start + span * keys.time, *values)
     curve = compat.ensure_fcurve(owner, *CHANNELS[2])
-    _write_keys(curve, frame_start + span * swell.time, swell.swell, swell.handle_left, swell.handle_right)
+    _write_keys(curve, frame_start + span * swell.time, swell.value, swell.handle_left, swell.handle_right)
     owner.update_tag()
 
 

@@ -3,7 +3,8 @@
 import bpy
 
 from ...core.ifs import IFSError
-from ...core.path import METHODS, check_frames, plan_path_steps
+from ...core.path import METHODS, plan_path_steps
+from ...core.report import check_frames_steps
 from .. import fcurves
 from ..conversion import core_name, fit_window, morph_of, path_fingerprint, tolerance
 from ..tasks import LongTask
@@ -114,8 +115,8 @@ class IFSMORPH_OT_check_path(LongTask, bpy.types.Operator):
         frames = range(settings.path.frame_start, settings.path.frame_end + 1)
         if not frames:
             raise IFSError("The path must end after the frame at which it starts.")
-        yield 0.0
-        check = check_frames(morph_of(settings), fcurves.sample_path(owner, frames), tolerance(settings))
+        places = fcurves.sample_path(owner, frames)
+        check = yield from check_frames_steps(morph_of(settings), places, tolerance(settings))
         settings.path.report = check.text()
         settings.path.inputs = path_fingerprint(settings)
         broken = [frame for frame, state in zip(frames, check.state, strict=True) if state != 0]

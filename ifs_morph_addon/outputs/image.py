@@ -5,11 +5,15 @@ import numpy as np
 
 from ...core import raster, shading
 from .. import compat
-from ..conversion import frame_colors
+from ..conversion import core_name, frame_colors
 from . import materials
 
 OWN_DATA = ("image", "spare_image", "material", "ramp")
 """Datablocks of the output settings that no two objects may share."""
+
+
+RAMP = "fire"
+"""The palette of a new color ramp."""
 
 
 def add_mesh(name: str):
@@ -56,8 +60,12 @@ def _new_ramp(owner):
     texture = bpy.data.textures.new(f"{owner.name} Color Ramp", "BLEND")
     texture.use_color_ramp = True
     elements = texture.color_ramp.elements
-    for element, (position, color) in zip(elements, shading.PALETTES["fire"], strict=False):
+    # A new ramp has two stops, which become the outer ones.
+    first, *between, last = shading.PALETTES[RAMP]
+    for element, (position, color) in zip(elements, (first, last), strict=True):
         element.position, element.color = position, color
+    for position, color in between:
+        elements.new(position).color = color
     return texture
 
 
@@ -120,21 +128,24 @@ def _picture(owner, settings, morph, frame) -> np.ndarray:
     output = settings.output
     width, height = output.resolution
     if frame is None:
-        return np.zeros((height, width, 4), dtype=np.float32)
-    image = raster.render(frame, (width, height), tuple(output.window), output.mode.lower())
-    result = np.zeros((height, width, 4), dtype=np.float32)
-    if output.mode == "ATTRACTORLET":
-        result = np.concatenate([np.zeros((1, 4), np.float32), frame_colors(settings)])[image]
+        return shading.shade(np.zeros((height, width), np.uint8), np.zeros((1, 4)), tuple(output.background))
+    factor = output.antialiasing
+    samples = raster.render(frame, (factor * width, factor * height), tuple(output.window), output.mode.lower())
+    if output.mode == "SET":
+        colors = np.float32([output.color])
+    elif output.mode == "DENSITY":
+        colors = _ramp(owner)
+        samples = shading.tone_map(samples, core_name(output.curve, shading.CURVES), output.exposure, output.gamma)
     else:
-        result[:] = (image > 0)[..., None] * np.float32(output.color)
-    result[..., :3] *= result[..., 3:]
-    return result
+        colors = frame_colors(settings)
+    return shading.shade(samples, colors, tuple(output.background), factor)
 
 
 def _ramp(owner) -> np.ndarray:
-    """Colors (256, 4) of the object's ramp, from thin to dense."""
+    """Colors (K, 4) of the object's ramp, from thin to dense."""
     ramp = owner.ifs_morph.output.ramp.color_ramp
-    return np.array([ramp.evaluate(k / 255) for k in range(256)], dtype=np.float32)
+    last = shading.LEVELS - 1
+    return np.array([ramp.evaluate(k / last) for k in range(shading.LEVELS)], dtype=np.float32)
 
 
 def _image_for(owner, for_render: bool):
