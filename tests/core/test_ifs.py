@@ -84,7 +84,7 @@ def test_a_number_that_is_not_finite_is_named_by_its_map(bad, place):
 
 
 def test_an_error_is_a_value_error_and_needs_no_name():
-    with pytest.raises(ValueError, match="^The IFS: maps have the shape"):
+    with pytest.raises(ValueError, match=r"^The IFS: maps have the shape"):
         IFS(np.zeros(3))
 
 
@@ -225,13 +225,13 @@ def assert_encloses(ifs):
 
 
 @given(systems())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_disc_and_bounds_hold_the_attractor(ifs):
     assert_encloses(ifs)
 
 
 @given(long_systems())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_disc_and_bounds_hold_the_attractor_with_norms_above_one(ifs):
     assume(ifs.contractivity == Contractivity.CONTRACTIVE)
     assert_encloses(ifs)

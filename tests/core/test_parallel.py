@@ -2,6 +2,7 @@
 
 import threading
 import time
+from itertools import pairwise
 
 import pytest
 
@@ -47,7 +48,7 @@ def test_progress_rises_to_one(threads):
     finish(steps(lambda k: time.sleep(0.01), range(30), threads), told.append)
     assert told[-1] == 1
     assert all(0 < share <= 1 for share in told)
-    assert all(before < after for before, after in zip(told, told[1:], strict=False))
+    assert all(before < after for before, after in pairwise(told))
     assert len(told) > 1
 
 

@@ -1,0 +1,130 @@
+"""The kernels that say where an attractor can be, on their own."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core import enclosure
+from core.enclosure import cover, enclosing_disc, outer_polygon, shrinking_words
+from core.shapes import SHAPES
+from tests.core import reference
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+def rows(ifs):
+    return np.ascontiguousarray(ifs.linear).reshape(-1, 4), np.ascontiguousarray(ifs.translation)
+
+
+@given(seeds, st.floats(-8, 2))
+@settings(max_examples=60)
+def test_norm_and_spectral_radius_are_numpys(seed, exponent):
+    random = np.random.default_rng(seed)
+    linear = random.normal(size=(2, 2))
+    if seed % 3 == 0:
+        linear[1] = linear[0] * random.normal()
+    linear[0] *= 10**exponent
+    norm = np.linalg.norm(linear, 2)
+    assert enclosure.norm(*linear.ravel()) == pytest.approx(norm, rel=1e-12)
+    radius = np.abs(np.linalg.eigvals(linear)).max()
+    # Twofold eigenvalues move with the root of the rounding.
+    assert enclosure.spectral_radius(*linear.ravel()) == pytest.approx(radius, rel=1e-9, abs=1e-7 * norm)
+
+
+@pytest.mark.parametrize("name", ["gasket", "Barnsley fern", "spiral", "Koch snowflake", "Pythagoras tree"])
+@pytest.mark.parametrize("limit", [0.5, 0.9])
+def test_a_cover_holds_one_prefix_of_every_address(name, limit):
+    linear, _ = rows(SHAPES[name])
+    outcome, parent, letter, product, size = cover(linear, limit, 20_000)
+    assert outcome == enclosure.COVERED
+    words = []
+    for k in range(len(parent)):
+        words.append((*(words[parent[k]] if parent[k] >= 0 else ()), int(letter[k])))
+        matrix = np.eye(2)
+        for i in words[-1]:
+            matrix = matrix @ SHAPES[name].linear[i]
+        assert product[k].reshape(2, 2) == pytest.approx(matrix, abs=1e-14)
+        assert size[k] == pytest.approx(np.linalg.norm(matrix, 2), rel=1e-12)
+    leaves = {word for word, short in zip(words, size <= limit, strict=True) if short}
+    # A random address runs into exactly one word of the cover.
+    random = np.random.default_rng(0)
+    for _ in range(200):
+        address = tuple(random.integers(len(linear), size=200).tolist())
+        assert sum(address[: len(word)] == word for word in leaves) == 1
+    # The shares of the addresses that start with each word sum to one: none is missing and none twice.
+    assert sum(float(len(linear)) ** -len(word) for word in leaves) == pytest.approx(1)
+
+
+def test_a_cover_gives_up_at_its_budget():
+    linear = np.array([[0.99, 0, 0, 0.99], [0, -0.99, 0.99, 0]])
+    assert cover(linear, 0.5, 100)[0] == enclosure.UNDECIDED
+    assert len(cover(linear, 0.5, 100)[1]) <= 100
+    assert cover(linear, 0.9, 10_000)[0] == enclosure.COVERED
+
+
+def test_a_budget_below_the_number_of_maps_is_no_harm():
+    linear = np.tile([0.3, 0, 0, 0.3], (50, 1))
+    assert cover(linear, 0.5, 3)[0] == enclosure.COVERED
+
+
+def test_a_word_that_grows_rules_an_attractor_out():
+    assert cover(np.array([[0.0, 2, 0, 0], [0, 0, 2, 0]]), 0.5, 1000)[0] == enclosure.NO_ATTRACTOR
+    assert cover(np.array([[1.0, 0, 0, 0.1]]), 0.5, 1000)[0] == enclosure.NO_ATTRACTOR
+    assert cover(np.array([[0.999, 0, 0, 0.1]]), 0.5, 1000)[0] == enclosure.COVERED
+
+
+def test_any_cover_gives_a_disc_that_holds_the_attractor():
+    for name in ("Barnsley fern", "spiral", "terdragon", "maple leaf"):
+        ifs = SHAPES[name]
+        points, _, _ = reference.dense(ifs.maps)
+        linear, translation = rows(ifs)
+        for limit in (0.3, 0.5, 0.95):
+            outcome, *words = cover(linear, limit, 50_000)
+            assert outcome == enclosure.COVERED
+            x, y, radius = enclosing_disc(linear, translation, *words, limit)
+            assert np.linalg.norm(points - (x, y), axis=1).max() <= radius
+
+
+def test_the_tight_cover_is_taken_where_it_is_short():
+    assert shrinking_words(rows(SHAPES["gasket"])[0])[-1] == enclosure.TIGHT_NORM
+    slow = np.array([[0.95, 0, 0, 0.95], [0, -0.95, 0.95, 0], [0.95, 0, 0, -0.95]])
+    assert shrinking_words(slow)[-1] == enclosure.CONTRACTIVE_NORM
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("directions", [4, 16, 64])
+def test_the_outer_polygon_holds_the_attractor_and_touches_it(name, directions):
+    ifs = SHAPES[name]
+    center, radius = ifs.enclosing_disc
+    linear, _ = rows(ifs)
+    translation = np.ascontiguousarray(ifs.translation + ifs.linear @ center - center)
+    reach, corners = outer_polygon(linear, translation, radius, directions, 1e-9 * radius)
+    angles = 2 * np.pi * np.arange(directions) / directions
+    normals = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    points, _, spacing = reference.dense(ifs.maps)
+    along = (points - center) @ normals.T
+    assert (along <= reach + 1e-12 * radius).all()
+    # Between neighbouring normals lie the corners.
+    assert (corners * normals).sum(axis=1) == pytest.approx(reach, abs=1e-12 * radius)
+    assert (corners * np.roll(normals, -1, axis=0)).sum(axis=1) == pytest.approx(np.roll(reach, -1), abs=1e-12 * radius)
+    if directions == 64:
+        assert (reach - along.max(axis=0)).max() <= spacing + 0.08 * radius
+
+
+@given(seeds)
+@settings(max_examples=40)
+def test_the_outer_polygon_is_an_enclosure_at_every_step(seed):
+    random = np.random.default_rng(seed)
+    linear = random.normal(size=(3, 2, 2))
+    linear *= (random.uniform(0.2, 0.85, 3) / np.linalg.norm(linear, 2, axis=(1, 2)))[:, None, None]
+    maps = np.concatenate([linear, random.normal(size=(3, 2, 1))], axis=-1)
+    points, _, _ = reference.dense(maps, 2000)
+    radius = np.linalg.norm(points, axis=1).max() * 1.01
+    # Such a disc holds the attractor although some maps lead out of it.
+    for tolerance in (1.0, 0.1, 1e-4):
+        reach, _ = outer_polygon(
+            linear.reshape(-1, 4), np.ascontiguousarray(maps[:, :, 2]), radius, 16, tolerance * radius
+        )
+        angles = 2 * np.pi * np.arange(16) / 16
+        assert (points @ np.stack([np.cos(angles), np.sin(angles)]) <= reach + 1e-12 * radius).all()
