@@ -3,7 +3,7 @@
 Every point keeps its address from the first frame to the last, so the cloud flows and does not flicker.
 """
 
-from .stage import add_morph, color_maps
+from .stage import add_morph, color_maps, color_world
 
 TITLE = "Fern to leaf"
 COLORS = ((0.32, 0.16, 0.05), (0.06, 0.34, 0.07), (0.2, 0.5, 0.06), (0.62, 0.3, 0.03))
@@ -11,13 +11,8 @@ COLORS = ((0.32, 0.16, 0.05), (0.06, 0.34, 0.07), (0.2, 0.5, 0.06), (0.62, 0.3, 
 
 def build(frames: int, size: int):
     """Build the scene and return the morph object; its path is still to be planned."""
-    import bpy
-
     owner = add_morph("POINTS", "Barnsley fern", "maple leaf", frames, size)
     color_maps(owner, COLORS)
     owner.ifs_morph.output.point_count = 60_000
-    scene = bpy.context.scene
-    scene.cycles.samples = 8
-    scene.cycles.use_denoising = False
-    scene.world.color = 0.05, 0.06, 0.07
+    color_world((0.02, 0.024, 0.03))
     return owner

@@ -35,6 +35,7 @@ def main() -> None:
         owner.ifs_morph.path.frame_end = arguments.frames
         _step(f"computing the locus, {arguments.locus} nodes a side", bpy.ops.ifs_morph.compute_locus)
         _step("planning and keying the path", bpy.ops.ifs_morph.plan_path)
+        stage.frame(owner)
         fcurves = import_module(f"{addon.__name__}.ifs_morph_addon.fcurves")
         path = fcurves.sample_path(owner, range(1, arguments.frames + 1))
         draw_locus(owner.ifs_morph.locus.image, path, fcurves.sample_path(owner, fcurves.key_frames(owner)), output)

@@ -10,6 +10,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 PACKAGE = "bl_ext.system.ifs_morph"
 FPS = 30
+BACKGROUND = 0.004, 0.005, 0.01
 
 
 def start():
@@ -50,14 +51,41 @@ def add_morph(kind: str, initial: str, final: str, frames: int, size: int):
     scene.render.fps = FPS
     scene.render.resolution_x = scene.render.resolution_y = size
     scene.render.engine = "CYCLES"
+    scene.cycles.samples = 4
+    scene.cycles.use_denoising = False
+    scene.render.use_persistent_data = True
     # Colors as they are; a film's response would gray the whites.
     scene.view_settings.view_transform = "Standard"
     scene.world = bpy.data.worlds.new("World")
-    scene.world.color = 0.0, 0.0, 0.0
+    color_world(BACKGROUND)
     bpy.ops.object.ifs_morph_add(kind=kind)
     bpy.ops.ifs_morph.load_shape(end="INITIAL", shape=initial)
     bpy.ops.ifs_morph.load_shape(end="FINAL", shape=final)
     return bpy.context.object
+
+
+def color_world(color: tuple[float, float, float]) -> None:
+    """Light the scene from all sides in a color, which is also seen behind everything."""
+    import bpy
+
+    world = bpy.context.scene.world
+    world.color = color
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = *color, 1.0
+
+
+def frame(owner) -> None:
+    """Fill the camera's view with the window of the morph, which is known when its path is."""
+    import bpy
+    from mathutils import Vector
+
+    low_x, low_y, high_x, high_y = owner.ifs_morph.output.window
+    bpy.context.view_layer.update()
+    middle = owner.matrix_world @ Vector(((low_x + high_x) / 2, (low_y + high_y) / 2, 0.0))
+    camera = bpy.context.scene.camera
+    camera.data.type = "ORTHO"
+    camera.data.ortho_scale = owner.scale.x * max(high_x - low_x, high_y - low_y)
+    camera.location.x, camera.location.z = middle.x, middle.z
 
 
 def color_maps(owner, colors) -> None:

@@ -4,17 +4,15 @@ With the maps paired as they stand, the locus is made of vertical bands with a g
 just enough to close it.
 """
 
-from .stage import add_morph
+from .stage import BACKGROUND, add_morph
 
 TITLE = "Terdragon to gasket"
 
 
 def build(frames: int, size: int):
     """Build the scene and return the morph object; its path is still to be planned."""
-    import bpy
-
     owner = add_morph("IMAGE", "terdragon", "gasket", frames, size)
     owner.ifs_morph.output.mode = "DENSITY"
     owner.ifs_morph.output.resolution = 2 * size, 2 * size
-    bpy.context.scene.cycles.samples = 8
+    owner.ifs_morph.output.background = *BACKGROUND, 1.0
     return owner
