@@ -1,37 +1,46 @@
-"""Points of an attractor with fixed addresses: the same point is the same place of the shape all through a morph."""
+"""Points of an attractor with fixed addresses: when the maps move, every point moves along, and none jumps.
+
+An *address* is a word that leads to a point. Point k of n has the number (k + 1/2) / n, and the weights part the unit
+interval among the maps, each part again, and so on: the letters of the address are the parts that the number falls into
+(arithmetic decoding). So the address depends on n and the weights alone.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numba import njit
 
 from . import parallel
 from .enclosure import norm
-from .ifs import IFS, IFSError
-from .words import cumulated, grown, unit_maps
+from .ifs import IFS
+from .words import IDENTITY, cumulated, grown, unit_maps
 
-CHUNKS = 16
+CHUNK = 1 << 15
+"""Points of a chunk at least, so that threads are worth their while."""
 
-LEAST_SIZE = 1e-8
-"""A word this small, relative to the attractor, is a single place, however many points it holds."""
+RADIUS_RANGE = (1 / 16, 2.0)
+"""Bounds of the radius of a point, relative to the one that would have all points just fill the enclosing disc."""
 
-RADIUS_RANGE = (1 / 64, 4.0)
-"""Radii of points, as multiples of the spacing that as many would have if they filled the enclosing disc."""
+INVISIBLE = 1e-9
+"""A word of this size relative to the attractor is a point, even if several addresses start with it."""
 
 
-class Points(NamedTuple):
+@dataclass(frozen=True)
+class Points:
     """Points of an attractor.
 
     Attributes
     ----------
     position : (count, 2) float32
     attractorlet : (count,) int32
-        The map whose attractorlet the point belongs to.
+        First letter of the address, the index of the map that the point's attractorlet is the image by.
     radius : (count,) float32
-        Of a disc about as large as the piece of the attractor that the point stands for.
+        Half the size of the piece of the attractor that the point stands for: small where points are dense. The norm
+        of the piece's word, its last letter apart from the others, scaled by the square root of the piece's share.
     """
 
     position: np.ndarray
@@ -40,97 +49,87 @@ class Points(NamedTuple):
 
 
 def point_cloud(ifs: IFS, count: int, address_weights: np.ndarray | None = None, threads: int | None = None) -> Points:
-    """Spread points over an attractor by its weights.
-
-    Point k stands for the number (k + 1/2) / count, whose place among the cumulated weights gives its first map, its
-    place within that part the second, and so on: an arithmetic code. So its address depends on the weights and the
-    count only, and the points lie as evenly as can be.
+    """Points of an attractor, spread by the weights.
 
     Parameters
     ----------
     ifs : IFS
     count : int
     address_weights : (N,), optional
-        By which the points are spread; by default the weights of `ifs`. Through a morph they must stay the same, or
-        points would jump from map to map.
+        Weights that give the addresses, those of `ifs` by default. Keep them the same all through an animation, and the
+        points keep their addresses.
     threads : int, optional
-        None for all processors; the result is the same to the byte.
+        By default one for each processor. The result is the same to the byte.
 
     Raises
     ------
     IFSError
         If there is no attractor.
     ValueError
-        If the count or the weights make no sense.
+        If the count is negative, or the weights are not N numbers, none negative and one positive.
     """
+    count = int(count)
+    if count < 0:
+        raise ValueError(f"There cannot be {count} points.")
     weights = ifs.weights if address_weights is None else np.asarray(address_weights, dtype=float)
-    if count < 1:
-        raise ValueError(f"A cloud of {count} points cannot be made; ask for one or more.")
-    if weights.shape != (ifs.count,) or not (weights >= 0).all() or not 0 < weights.sum() < np.inf:
-        raise ValueError(f"The address weights must be {ifs.count} numbers, none negative and not all zero.")
-    maps, center, radius = unit_maps(ifs, least_radius=1e-12)
-    home = (ifs.fixed_points[int(np.argmax(weights))] - center) / radius
-    points = Points(np.empty((count, 2), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
-    spacing = radius / math.sqrt(count)
-    place = np.array([*center, radius, RADIUS_RANGE[0] * spacing, RADIUS_RANGE[1] * spacing])
+    if weights.shape != (ifs.count,) or not (np.isfinite(weights).all() and (weights >= 0).all() and weights.sum() > 0):
+        raise ValueError(f"Address weights must be {ifs.count} numbers, none negative and one positive.")
+    maps, center, radius = unit_maps(ifs, least_radius=1e-30)
+    # Every point is the image of one point of the attractor: the fixed point of the map with the most weight.
+    a, b, e, c, d, f = maps[np.argmax(weights)]
+    seed = np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
+    seeds = maps.reshape(-1, 2, 3) @ [*seed, 1.0]
     borders = cumulated(weights)
-    edges = [count * chunk // CHUNKS for chunk in range(CHUNKS + 1)]
+    points = Points(np.empty((count, 2), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
+    bounds = np.array(RADIUS_RANGE) * radius / math.sqrt(max(count, 1))
 
-    def fill(chunk: int) -> None:
-        fill_points(maps, borders, home, place, edges[chunk], edges[chunk + 1], *points)
+    def chunk(ends: tuple[int, int]) -> None:
+        found = points.position, points.attractorlet, points.radius
+        decode(maps, ifs.norms, seeds, borders, center, radius, bounds, count, *ends, *found)
 
-    parallel.run(fill, range(CHUNKS), threads)
-    if not np.isfinite(points.position).all():
-        raise IFSError("The attractor lies too far out to be drawn; move its maps towards the origin.")
+    chunks = min(parallel.thread_count(threads), count // CHUNK + 1)
+    parallel.run(chunk, list(pairwise(np.linspace(0, count, chunks + 1).astype(np.int64))), threads)
     return points
 
 
 @njit(nogil=True, cache=True)
-def fill_points(maps, borders, home, place, start, end, position, attractorlet, radii):
-    """Points `start` to `end` of the arithmetic code, by a walk over all words that hold some of them.
+def decode(maps, norms, seeds, borders, center, radius, bounds, count, begin, end, position, attractorlet, radii):
+    """Find the points from `begin` to `end` (exclusive) of `count`.
 
-    Parameters
-    ----------
-    maps : (N, 6)
-        Rows a, b, e, c, d, f in coordinates in which the unit disc holds the attractor.
-    borders : (N + 1,)
-        Cumulated weights.
-    home : (2,)
-        The point of the attractor that words are applied to.
-    place : (5,)
-        Centre and radius of the disc that the unit disc stands for; least and largest radius of a point.
-    start, end : int
-    position, attractorlet, radii
-        The arrays of `Points`, filled for these points.
+    Takes the words depth first, each with its part of the interval from 0 to `count`, and leaves out those whose parts
+    hold none of the points k + 1/2 asked for. So words that several addresses start with are composed only once. A word
+    that is down to one point takes it to where its last letter i takes the seed, `seeds[i]`.
     """
-    count, total = maps.shape[0], position.shape[0]
-    # A word: its map, the part of the points that it holds (from, to), and its first letter.
-    stack, top = np.empty((64 + count, 9)), 1
-    stack[0] = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, total, -1.0])
+    # Columns: the map, the ends of the part, the first letter.
+    stack, top = np.empty((256, 9)), 1
+    for k in range(6):
+        stack[0, k] = IDENTITY[k]
+    stack[0, 6], stack[0, 7], stack[0, 8] = 0.0, count, -1.0
     while top > 0:
         top -= 1
         a, b, e = stack[top, 0], stack[top, 1], stack[top, 2]
         c, d, f = stack[top, 3], stack[top, 4], stack[top, 5]
         low, high, letter = stack[top, 6], stack[top, 7], stack[top, 8]
-        first, last = max(math.ceil(low - 0.5), 0), min(math.ceil(high - 0.5), total)
-        if last <= start or first >= end or last <= first:
-            continue
         size = norm(a, b, c, d)
-        if letter >= 0 and (last - first == 1 or size <= LEAST_SIZE):
-            x = place[0] + place[2] * (a * home[0] + b * home[1] + e)
-            y = place[1] + place[2] * (c * home[0] + d * home[1] + f)
-            radius = min(max(place[2] * size, place[3]), place[4])
-            for k in range(max(first, start), min(last, end)):
-                position[k, 0], position[k, 1] = x, y
-                attractorlet[k] = int(letter)
-                radii[k] = radius
-            continue
-        if top + count > stack.shape[0]:
-            stack = grown(stack, 2 * stack.shape[0] + count)
-        for i in range(count):
-            p, q, r, s, t, u = maps[i, 0], maps[i, 1], maps[i, 2], maps[i, 3], maps[i, 4], maps[i, 5]
-            stack[top, 0], stack[top, 1], stack[top, 2] = a * p + b * s, a * q + b * t, a * r + b * u + e
-            stack[top, 3], stack[top, 4], stack[top, 5] = c * p + d * s, c * q + d * t, c * r + d * u + f
-            stack[top, 6], stack[top, 7] = low + (high - low) * borders[i], low + (high - low) * borders[i + 1]
-            stack[top, 8] = letter if letter >= 0 else i
-            top += 1
+        if top + maps.shape[0] > stack.shape[0]:
+            stack = grown(stack, 2 * stack.shape[0] + maps.shape[0])
+        left = low
+        for i in range(maps.shape[0]):
+            right = low + (high - low) * borders[i + 1] if i + 1 < maps.shape[0] else high
+            first, last = math.ceil(left - 0.5), math.ceil(right - 0.5)
+            start = letter if letter >= 0 else i
+            if last - first == 1 or (last > first and size < INVISIBLE):
+                # A point stands for a part of length 1; area is taken to be spread as weight is.
+                around = radius * size * norms[i] / math.sqrt(right - left)
+                for k in range(max(first, begin), min(last, end)):
+                    position[k, 0] = center[0] + radius * (a * seeds[i, 0] + b * seeds[i, 1] + e)
+                    position[k, 1] = center[1] + radius * (c * seeds[i, 0] + d * seeds[i, 1] + f)
+                    attractorlet[k] = np.int32(start)
+                    radii[k] = min(max(around, bounds[0]), bounds[1])
+            elif first < last and first < end and last > begin:
+                p, q, r, s, t, u = maps[i, 0], maps[i, 1], maps[i, 2], maps[i, 3], maps[i, 4], maps[i, 5]
+                stack[top, 0], stack[top, 1], stack[top, 2] = a * p + b * s, a * q + b * t, a * r + b * u + e
+                stack[top, 3], stack[top, 4], stack[top, 5] = c * p + d * s, c * q + d * t, c * r + d * u + f
+                stack[top, 6], stack[top, 7], stack[top, 8] = left, right, start
+                top += 1
+            left = right

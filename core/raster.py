@@ -16,7 +16,7 @@ from . import chaos, drawing
 from .affine import compose
 from .ifs import IFS, Contractivity, IFSError
 from .pieces import measures, outlines
-from .words import LETTER, WORD_MASS, cumulated, cut_dimension, cut_words, unit_maps
+from .words import LETTER, WORD_MASS, cumulated, cut_dimensions, cut_words, unit_maps
 
 MODES = ("set", "density", "attractorlet")
 
@@ -34,14 +34,14 @@ PIECE_RANGE = (16.0, 32.0)
 
 SET_RATIO = 8.0
 SET_WORDS = 64.0
-"""A set of points is made of sets that are smaller by this ratio, or by less where more words than these would overlap."""
+"""A set of points is made of sets that are smaller by this ratio, or by less where more than so many words overlap."""
 
 OVERLAP = 16.0
-"""Words that may lie over one place of the picture. Where an attractor overlaps itself more, its words are made larger."""
+"""Words that may lie over one place of the picture. If an attractor overlaps itself more, its words are made larger."""
 
-DIMENSION_LIMIT = 12.0
-"""Attractors whose cuts grow by a higher dimension (`words.dimension`) are left to the chaos game. One of its points
-costs as much as six of a set, but such attractors overlap themselves so often that sets of points are no gain."""
+GROWTH_LIMIT = 12.0
+"""Attractors whose words multiply by a higher exponent (`words.cut_dimensions`) are left to the chaos game. One of its
+points costs as much as six of a set, but such attractors overlap themselves so often that sets are no gain."""
 
 CHAOS_POINTS = 16.0
 """Points of the chaos game for each pixel of the picture, at least."""
@@ -73,8 +73,8 @@ def render(
     mode : str
         "set", "density" or "attractorlet".
     samples : float, optional
-        Points for each pixel of a filled shape, held within `SAMPLES_RANGE`; by default `SAMPLES`. More points find more
-        of the pixels that the attractor only just touches, and place its density more finely.
+        Points for each pixel of a filled shape, held within `SAMPLES_RANGE`; by default `SAMPLES`. More points find
+        more of the pixels that the attractor only just touches, and place its density more finely.
     threads : int, optional
         By default one for each processor. The result is the same to the byte.
     norms : (N,), optional
@@ -111,8 +111,8 @@ def render(
     borders = cumulated(ifs.weights)
     labels = np.arange(1, ifs.count + 1, dtype=np.uint8) if mode == "attractorlet" else np.ones(ifs.count, np.uint8)
     canvas = np.zeros((height, width), np.int64 if mode == "density" else np.uint8)
-    dimension = cut_dimension(maps, norms)
-    if dimension > DIMENSION_LIMIT:
+    growth, dimension = cut_dimensions(maps, norms)
+    if growth > GROWTH_LIMIT:
         in_pixels = _conjugated(maps, root)
         points = max(samples, CHAOS_POINTS) * width * height
         if mode == "density":
@@ -122,7 +122,7 @@ def render(
     else:
         side = math.sqrt(width * height)
         extent = _extent(2 * radius * max(across, along), side, norms)
-        cell, piece, ratio = _resolution(mode, samples, dimension, extent, side)
+        cell, piece, ratio = _resolution(mode, samples, growth, dimension, extent, side)
         # Half octaves below the extent, so that maps that scale by one or more of them lead from set to set exactly.
         smallest = extent * 2 ** (round(2 * math.log2(cell / extent)) / 2)
         shown = np.array([0.0, 0.0, width, height])
@@ -172,8 +172,10 @@ def fit_window(shapes: IFS | Iterable[IFS], size: tuple[int, int], margin: float
     return (*(center - half).tolist(), *(center + half).tolist())
 
 
-def _resolution(mode: str, samples: float, dimension: float, extent: float, side: float) -> tuple[float, float, float]:
-    """Side of the cells, size of the words and ratio of the sets of points to make, from the dimension of the cut.
+def _resolution(
+    mode: str, samples: float, growth: float, dimension: float, extent: float, side: float
+) -> tuple[float, float, float]:
+    """Side of the cells, size of the words, and ratio of sizes of the sets of points, from `words.cut_dimensions`.
 
     A filled shape, of dimension 2, gets cells of one `samples`-th of a pixel. A thinner one is all border, where points
     tell more, and its cells are smaller: as many as a filled one would have in a picture of so many pixels.
@@ -185,10 +187,10 @@ def _resolution(mode: str, samples: float, dimension: float, extent: float, side
     cell = 2 ** (round(2 * math.log2(cell)) / 2)
     piece = min(max(PIECE_CELLS * cell, PIECE_RANGE[0]), PIECE_RANGE[1])
     ratio = SET_RATIO
-    if dimension > 2:
-        # Words of size s lie (extent / s) ** (dimension - 2) times over each other.
-        piece = max(piece, extent * math.exp(-math.log(OVERLAP) / (dimension - 2)))
-        ratio = max(min(ratio, math.exp(min(math.log(SET_WORDS) / (dimension - 2), 3))), 1.5)
+    if growth > 2:
+        # Words of size s lie (extent / s) ** (growth - 2) times over each other.
+        piece = max(piece, extent * math.exp(-math.log(OVERLAP) / (growth - 2)))
+        ratio = max(min(ratio, math.exp(min(math.log(SET_WORDS) / (growth - 2), 3))), 1.5)
     return cell, piece, ratio
 
 

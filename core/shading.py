@@ -1,10 +1,13 @@
-"""Rendered attractors to colors: palettes, tone mapping, color ramps, antialiasing.
+"""Pictures to colours: tone mapping of density, colour ramps, attractorlet colours, antialiasing.
 
-Colors are scene linear. A raster becomes indices into a table of colors, and the table is averaged over the samples of
-each pixel; so the three modes share one kernel, and no picture of samples in full color is ever held.
+All colours are scene linear RGB, as in Blender's float images, and have straight alpha unless said. Antialiasing means
+to render more pixels than are shown, and to take the mean of each square of them here.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numba import njit
@@ -14,161 +17,231 @@ from .raster import TOTAL_MASS
 
 CURVES = ("log", "gamma", "linear")
 
-WHITE = 48.0
-"""Density that becomes white at exposure 0, as a multiple of that of a measure spread evenly over the picture."""
+WHITE = 32.0
+"""Density that is shown at full brightness, as a multiple of what it would be were the attractor spread evenly over the
+picture. So brightness depends neither on the picture's size or samples nor on the frame's maximum, which flickers."""
 
-LEVELS = 1024
-"""Steps of a color ramp."""
+RAMP_ENTRIES = 256
 
-ROWS = 64
-"""Rows of pixels shaded in one chunk of work."""
+Stops = Sequence[tuple[float, Sequence[float]]]
 
-GOLDEN_RATIO = (1 + 5**0.5) / 2
 
-Stops = tuple[tuple[float, tuple[float, float, float, float]], ...]
+def _linear(code: str, alpha: float = 1.0) -> tuple[float, float, float, float]:
+    """A scene linear colour from the usual six hexadecimal digits, which mean sRGB (IEC 61966-2-1)."""
+    values = np.array([int(code[k : k + 2], 16) for k in (0, 2, 4)]) / 255
+    values = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+    return (*values.round(5).tolist(), alpha)
+
+
+def _palette(*codes: str) -> Stops:
+    """Evenly spaced colours that start from transparency."""
+    last = len(codes) - 1
+    return tuple((k / last, _linear(code, float(k > 0))) for k, code in enumerate(codes))
+
 
 PALETTES: dict[str, Stops] = {
-    "fire": (
-        (0.0, (0.02, 0.0, 0.01, 1.0)),
-        (0.3, (0.35, 0.02, 0.01, 1.0)),
-        (0.65, (0.95, 0.28, 0.02, 1.0)),
-        (1.0, (1.0, 0.95, 0.6, 1.0)),
-    ),
-    "ice": (
-        (0.0, (0.0, 0.005, 0.03, 1.0)),
-        (0.4, (0.01, 0.1, 0.4, 1.0)),
-        (0.75, (0.12, 0.6, 0.9, 1.0)),
-        (1.0, (0.9, 1.0, 1.0, 1.0)),
-    ),
-    "forest": (
-        (0.0, (0.002, 0.012, 0.004, 1.0)),
-        (0.45, (0.02, 0.2, 0.03, 1.0)),
-        (0.8, (0.35, 0.65, 0.08, 1.0)),
-        (1.0, (1.0, 1.0, 0.55, 1.0)),
-    ),
-    "gray": ((0.0, (0.0, 0.0, 0.0, 1.0)), (1.0, (1.0, 1.0, 1.0, 1.0))),
+    "fire": _palette("1a0500", "5c0f0a", "c2360c", "f58a1f", "ffd36b", "fff8e1"),
+    "ice": _palette("01060f", "0b2a5b", "1f63a8", "4ea9dd", "a9e1f5", "f6feff"),
+    "leaf": _palette("020a03", "0d3b1c", "2f7a2d", "74b43c", "c6e070", "fbffe0"),
+    "dusk": _palette("05010d", "2b1055", "7b2a80", "d1495b", "f2a65a", "fff1d0"),
+    "gold": _palette("080602", "3d2a0a", "8a6414", "c9a02c", "efd98a", "fffbea"),
+    "silver": _palette("000000", "2b2b2f", "66686e", "a2a5ab", "d9dbdf", "ffffff"),
 }
-"""Color ramps from thin to dense: positions in [0, 1] and their colors."""
+"""Colour ramps by name: stops (position in [0, 1], (r, g, b, a)) from none, which is transparent, to dense."""
 
 
 def attractorlet_colors(count: int) -> np.ndarray:
-    """Colors (count, 4) that tell attractorlets apart: hues a golden angle from one another, of about one lightness."""
-    hue = (0.02 + np.arange(count) / GOLDEN_RATIO) % 1.0
-    # Each channel is a raised cosine about its own hue.
-    channels = 0.5 + 0.5 * np.cos(2 * np.pi * (hue[:, None] - np.array([0.0, 1 / 3, 2 / 3])))
-    encoded = 0.18 + 0.8 * channels
-    return np.column_stack([encoded**2.2, np.ones(count)]).astype(np.float32)
+    """Colours (count, 4) that are easy to tell apart and equally light: hues a golden angle apart.
+
+    Equal in lightness and chroma by Oklab (Ottosson 2020).
+    """
+    angle = np.arange(count) * np.pi * (3 - np.sqrt(5)) + 0.5
+    lab = np.stack([np.full(count, 0.74), 0.13 * np.cos(angle), 0.13 * np.sin(angle)])
+    cones = np.array(
+        [[1, 0.3963377774, 0.2158037573], [1, -0.1055613458, -0.0638541728], [1, -0.0894841775, -1.2914855480]]
+    )
+    rgb = np.array(
+        [
+            [4.0767416621, -3.3077115913, 0.2309699292],
+            [-1.2684380046, 2.6097574011, -0.3413193965],
+            [-0.0041960863, -0.7034186147, 1.7076147010],
+        ]
+    )
+    colors = np.ones((count, 4), np.float32)
+    colors[:, :3] = np.clip(rgb @ (cones @ lab) ** 3, 0, 1).T
+    return colors
+
+
+def ramp_lookup(stops: Stops, entries: int = RAMP_ENTRIES) -> np.ndarray:
+    """Colours (entries, 4) float32 at even steps along a ramp, interpolated linearly between its stops."""
+    positions = np.array([position for position, _ in stops], dtype=float)
+    colors = np.array([color for _, color in stops], dtype=float)
+    order = np.argsort(positions, kind="stable")
+    steps = np.linspace(0, 1, entries)
+    return np.stack([np.interp(steps, positions[order], colors[order, k]) for k in range(4)], axis=1).astype(np.float32)
 
 
 def tone_map(density: np.ndarray, curve: str = "log", exposure: float = 0.0, gamma: float = 2.2) -> np.ndarray:
-    """Density to brightness.
+    """Brightness from density.
 
-    The density is taken relative to that of the whole measure spread evenly over the picture, not to the densest pixel
-    of the frame: so brightness does not flicker, and does not depend on the number of samples.
+    With x the density relative to an even spread over the picture, times 2 ** exposure, and W = `WHITE`:
+    *linear* ``x / W``, *gamma* ``(x / W) ** (1 / gamma)``, *log* ``log(1 + x) / log(1 + W)``, each at most 1.
 
     Parameters
     ----------
-    density : (H, W)
-        From `raster.render`; `raster.TOTAL_MASS` is the whole attractor.
+    density : (H, W) int64
+        From `raster.render`.
     curve : str
-        "log" shows thin and dense parts alike, "gamma" is a power, "linear" is the density itself.
+        One of `CURVES`.
     exposure : float
         In stops.
     gamma : float
-        Brightness is raised to 1 / gamma, but for "linear".
+        Positive; of the curve *gamma* only.
 
     Returns
     -------
     (H, W) float32
         In [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If there is no such curve or gamma is not above 0.
     """
     if curve not in CURVES:
         raise ValueError(f"There is no curve “{curve}”; choose one of {', '.join(CURVES)}.")
     if not gamma > 0:
-        raise ValueError(f"Gamma is {gamma:g}; it must be above 0.")
-    relative = density.astype(np.float32) * np.float32(2.0**exposure * density.size / TOTAL_MASS)
-    bright = np.log1p(relative) / np.float32(np.log1p(WHITE)) if curve == "log" else relative / np.float32(WHITE)
-    if curve != "linear":
-        bright **= np.float32(1 / gamma)
-    return np.minimum(bright, np.float32(1.0))
-
-
-def ramp_colors(stops: Stops, count: int = LEVELS) -> np.ndarray:
-    """Colors (count, 4) of a ramp, evenly spaced and interpolated linearly between stops."""
-    positions = np.array([position for position, _ in stops])
-    colors = np.array([color for _, color in stops])
-    places = np.linspace(0, 1, count)
-    return np.stack([np.interp(places, positions, colors[:, k]) for k in range(4)], axis=1).astype(np.float32)
+        raise ValueError(f"Gamma is {gamma:g}; it must be above zero.")
+    brightness = np.multiply(density, density.size / TOTAL_MASS * 2.0**exposure, dtype=np.float32, casting="unsafe")
+    if curve == "log":
+        brightness += 1
+        np.log2(brightness, out=brightness)
+        brightness *= 1 / np.log2(1 + WHITE)
+    else:
+        brightness *= 1 / WHITE
+        if curve == "gamma":
+            brightness **= 1 / gamma
+    return np.minimum(brightness, 1, out=brightness)
 
 
 def shade(
     picture: np.ndarray,
+    mode: str,
     colors: np.ndarray,
-    background: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0),
-    factor: int = 1,
+    background: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+    antialiasing: int = 1,
+    curve: str = "log",
+    exposure: float = 0.0,
+    gamma: float = 2.2,
+    premultiplied: bool = False,
     threads: int | None = None,
 ) -> np.ndarray:
-    """Color a picture of samples and average the samples of each pixel.
+    """Colour a rendered picture.
 
     Parameters
     ----------
-    picture : (factor * H, factor * W)
-        *Set* or *attractorlet* pictures of `raster.render`: 0 for the background, i for color i - 1. Or brightness in
-        [0, 1] from `tone_map`, float32, with colors (K, 4), K > 1, as from `ramp_colors`; 0 is the background.
-    colors : (K, 4)
-        Straight alpha.
+    picture : (antialiasing * H, antialiasing * W)
+        From `raster.render`, in `mode`.
+    mode : str
+        "set", "density" or "attractorlet".
+    colors
+        Scene linear, straight alpha. *Set*: (4,), of the attractor. *Density*: (K, 4), a ramp from none to dense, see
+        `ramp_lookup`. *Attractorlet*: (N, 4), see `attractorlet_colors`.
     background : (4,)
-        Straight alpha.
-    factor : int
-        Samples along each side of a pixel: the antialiasing.
+        What lies behind.
+    antialiasing : int
+        Pixels along each side of a square that becomes one pixel.
+    curve, exposure, gamma
+        As `tone_map` takes them; for density.
+    premultiplied : bool
+        Return colours that are multiplied by their alpha.
+    threads : int, optional
+        By default one for each processor.
 
     Returns
     -------
     (H, W, 4) float32
-        Color times alpha, and alpha, which is how Blender takes an image with premultiplied alpha. Row 0 is the lowest.
-
-    Raises
-    ------
-    ValueError
-        If the picture cannot be divided by the factor.
+        C-contiguous, for Blender's ``Image.pixels.foreach_set``.
     """
-    height, width = picture.shape
-    if factor < 1 or height % factor or width % factor:
-        raise ValueError(f"A picture of {width} x {height} samples does not divide into pixels of {factor} x {factor}.")
-    table = np.empty((len(colors) + 1, 4), dtype=np.float32)
-    table[0], table[1:] = background, colors
-    table[:, :3] *= table[:, 3:]
-    table[1:] += (1 - table[1:, 3:]) * table[0]
-    if picture.dtype == np.float32 and len(colors) > 1:
-        # Any density at all is above the background, however thin.
-        indices = np.ceil(picture * np.float32(len(colors) - 1)).astype(np.uint16)
-        indices += picture > 0
+    factor = int(antialiasing)
+    if factor < 1 or picture.shape[0] % factor or picture.shape[1] % factor:
+        raise ValueError(f"A picture of shape {picture.shape} has no whole squares of {antialiasing} pixels a side.")
+    colors = np.asarray(colors, dtype=np.float32)
+    background = np.asarray(background, dtype=np.float32)
+    if mode == "attractorlet":
+        table = np.zeros((256, 4), np.float32)
+        table[1 : len(colors) + 1] = colors
+        table = _multiplied(_over(table, background))
+    elif mode == "density":
+        values = tone_map(_summed(picture, factor), curve, exposure, gamma)
+        table = _over(colors, background)
     else:
-        indices = picture.astype(np.uint16)
-    result = np.empty((height // factor, width // factor, 4), dtype=np.float32)
-    starts = range(0, len(result), ROWS)
-    parallel.run(lambda start: average(indices, table, factor, start, start + ROWS, result), starts, threads)
+        values = _summed(picture, factor) * np.float32(1 / factor**2)
+        table = np.tile(colors, (RAMP_ENTRIES, 1))
+        table[:, 3] *= np.linspace(0, 1, RAMP_ENTRIES)
+        table = _over(table, background)
+    result = np.empty((picture.shape[0] // factor, picture.shape[1] // factor, 4), np.float32)
+
+    def strip(rows: tuple[int, int]) -> None:
+        if mode == "attractorlet":
+            mix_labels(picture, table, factor, premultiplied, *rows, result)
+        else:
+            look_up(values, table, premultiplied, *rows, result)
+
+    borders = np.linspace(0, len(result), parallel.thread_count(threads) + 1).astype(int)
+    parallel.run(strip, list(pairwise(borders)), threads)
     return result
 
 
+def _summed(picture: np.ndarray, factor: int) -> np.ndarray:
+    """Sums over squares of `factor` pixels a side."""
+    total = picture[::factor, ::factor].copy() if factor > 1 else picture
+    for row in range(factor):
+        for column in range(factor):
+            if row or column:
+                total += picture[row::factor, column::factor]
+    return total
+
+
+def _over(colors: np.ndarray, background: np.ndarray) -> np.ndarray:
+    """Colours (K, 4) laid over a background (4,), all with straight alpha."""
+    behind = background[3] * (1 - colors[:, 3:])
+    alpha = colors[:, 3:] + behind
+    mixed = colors[:, :3] * colors[:, 3:] + background[:3] * behind
+    return np.concatenate([np.divide(mixed, alpha, out=colors[:, :3].copy(), where=alpha > 0), alpha], axis=1)
+
+
+def _multiplied(colors: np.ndarray) -> np.ndarray:
+    return np.concatenate([colors[:, :3] * colors[:, 3:], colors[:, 3:]], axis=1)
+
+
 @njit(nogil=True, cache=True)
-def average(indices, table, factor, first_row, last_row, result):
-    """Mean color of factor x factor samples for each pixel of some rows."""
-    share = np.float32(1.0 / (factor * factor))
-    for row in range(first_row, min(last_row, result.shape[0])):
+def look_up(values, table, premultiplied, first_row, last_row, result):
+    """Colours of values in [0, 1] (H, W) from a table (K, 4), interpolated linearly."""
+    last = table.shape[0] - 1
+    for row in range(first_row, last_row):
+        for column in range(values.shape[1]):
+            place = values[row, column] * last
+            k = min(int(place), last - 1)
+            share = np.float32(place - k)
+            for channel in range(4):
+                result[row, column, channel] = table[k, channel] + (table[k + 1, channel] - table[k, channel]) * share
+            if premultiplied:
+                for channel in range(3):
+                    result[row, column, channel] *= result[row, column, 3]
+
+
+@njit(nogil=True, cache=True)
+def mix_labels(labels, table, factor, premultiplied, first_row, last_row, result):
+    """Mean colours of squares of labels, from a table (256, 4) of colours that are multiplied by their alpha."""
+    share = np.float32(1 / (factor * factor))
+    for row in range(first_row, last_row):
         for column in range(result.shape[1]):
-            red = green = blue = alpha = np.float32(0.0)
-            for y in range(row * factor, (row + 1) * factor):
-                for x in range(column * factor, (column + 1) * factor):
-                    color = table[indices[y, x]]
-                    red += color[0]
-                    green += color[1]
-                    blue += color[2]
-                    alpha += color[3]
-            pixel = result[row, column]
-            pixel[0], pixel[1], pixel[2], pixel[3] = red * share, green * share, blue * share, alpha * share
+            red, green, blue, alpha = np.float32(0), np.float32(0), np.float32(0), np.float32(0)
+            for i in range(row * factor, (row + 1) * factor):
+                for j in range(column * factor, (column + 1) * factor):
+                    label = labels[i, j]
+                    red += table[label, 0]
+                    green += table[label, 1]
+                    blue += table[label, 2]
+                    alpha += table[label, 3]
+            scale = share if premultiplied else (1 / alpha if alpha > 0 else np.float32(0))
+            result[row, column, 0] = red * scale
+            result[row, column, 1] = green * scale
+            result[row, column, 2] = blue * scale
+            result[row, column, 3] = alpha * share

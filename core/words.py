@@ -142,28 +142,41 @@ def grown(table, length):
     return longer
 
 
-def dimension(ratios: np.ndarray) -> float:
-    """The d with ``sum(ratios ** d) = 1``: pieces half as large are 2 ** d times as many (Moran 1946).
+def dimension(large: np.ndarray, small: np.ndarray) -> float:
+    """Dimension of an attractor whose parts have these singular values (M,), relative to all of it (Falconer 1988).
 
-    It is the dimension of the attractor where similarities do not overlap, and more where they do.
+    It is the d, up to 2, with ``sum(large * small ** (d - 1)) = 1``, or below 1 with ``sum(large ** d) = 1``. For
+    similarities that is ``sum(ratio ** d) = 1`` (Moran 1946): there are 2 ** d times as many parts of half the size,
+    which may be more than the plane has room for; the equation is used for any d where `large` is `small`.
     """
+
+    def total(d: float) -> float:
+        return float(np.sum(large ** min(d, 1.0) * small ** max(d - 1.0, 0.0)))
+
     low, high = 0.0, 1.0
-    while high < 1000 and np.sum(ratios**high) > 1:
+    while high < 1000 and total(high) > 1:
         low, high = high, 2 * high
     for _ in range(20):
         middle = (low + high) / 2
-        low, high = (middle, high) if np.sum(ratios**middle) > 1 else (low, middle)
+        low, high = (middle, high) if total(middle) > 1 else (low, middle)
     return high
 
 
-def cut_dimension(maps: np.ndarray, norms: np.ndarray) -> float:
-    """Dimension by which the number of words in a cut grows as they get smaller: `dimension`, of words where need be.
+def cut_dimensions(maps: np.ndarray, norms: np.ndarray) -> tuple[float, float]:
+    """Exponents by which words multiply in a cut as it gets finer, and by which the attractor fills the plane.
 
-    Infinite where pieces of half the attractor's size already take more than `DIMENSION_BUDGET` words.
+    Both are `dimension`; the first is that of parts as wide as they are long. They are infinite where half the size of
+    the attractor already takes more than `DIMENSION_BUDGET` words.
     """
     if len(norms):
-        return dimension(norms)
+        growth = dimension(norms, norms)
+        return growth, growth
     words = cut_words(
         IDENTITY, maps, norms, 2.0, 2 * DIMENSION_SIZE, np.zeros(len(maps) + 1), EVERYWHERE, DIMENSION_BUDGET
     )
-    return np.inf if len(words) > DIMENSION_BUDGET else dimension(words[:, SIZE] / 2)
+    if len(words) > DIMENSION_BUDGET:
+        return np.inf, np.inf
+    large = words[:, SIZE] / 2
+    area = np.abs(words[:, 0] * words[:, 4] - words[:, 1] * words[:, 3])
+    small = np.divide(area, large, out=np.zeros_like(area), where=large > 0)
+    return dimension(large, large), dimension(large, small)
