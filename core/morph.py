@@ -61,7 +61,8 @@ class Morph:
         if scheme not in SCHEMES:
             raise IFSError(f"There is no scheme “{scheme}”; choose one of {', '.join(SCHEMES)}.")
         winding = np.zeros(initial.count) if winding is None else np.asarray(winding, dtype=float)
-        if winding.shape != (initial.count,) or not np.array_equal(winding, np.round(winding)):
+        whole = np.isfinite(winding).all() and np.array_equal(winding, np.round(winding))
+        if winding.shape != (initial.count,) or not whole:
             raise IFSError(f"Winding must be {initial.count} whole numbers of turns, one a map.")
         self.initial, self.final, self.scheme, self.winding = initial, final, scheme, winding.astype(int)
 

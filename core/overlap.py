@@ -24,6 +24,9 @@ MEET, APART, UNKNOWN = 0, 1, 2
 SLACK = 1e-12
 """Rounding allowed in a distance, so that pieces are called apart only when they are."""
 
+POINT = 1e-12
+"""An attractor this small beside its distance from the origin is one point: what is left is rounding."""
+
 DISC_BUDGET = 256
 POLYGON_BUDGET = 4000
 """Pairs of pieces looked at in the first stage, which knows discs only, and in the second."""
@@ -123,7 +126,7 @@ def polygon_distance(one, other, corners, enough):
 
 
 @njit(nogil=True, cache=True)
-def pair_test(linear, unit, i, j, tolerance, corners, budget, first, second):
+def pair_test(linear, unit, i, j, tolerance, corners, budget, first, second, key):
     """Whether attractorlets i and j meet.
 
     Splits the larger of two pieces into its parts, nearest first, drops pairs that are certainly apart, and stops at a
@@ -139,7 +142,7 @@ def pair_test(linear, unit, i, j, tolerance, corners, budget, first, second):
         Of the outer polygon; with K = 0 only discs are tried.
     budget : int
         Pairs looked at before giving up.
-    first, second : (STACK, 7)
+    first, second, key : (STACK, 7) twice, (STACK,)
         Work space.
 
     Returns
@@ -149,7 +152,6 @@ def pair_test(linear, unit, i, j, tolerance, corners, budget, first, second):
     """
     count = linear.shape[0]
     one, other, child = np.empty(7), np.empty(7), np.empty(7)
-    key = np.empty(first.shape[0])
     set_piece(linear, unit, i, first[0])
     set_piece(linear, unit, j, second[0])
     if distance(first[0], second[0]) > first[0, 6] + second[0, 6] + SLACK:
@@ -226,7 +228,7 @@ def surely_one_piece(labels, areas):
 
 
 @njit(nogil=True, cache=True)
-def decide(linear, unit, areas, tolerance, labels, first, second):
+def decide(linear, unit, areas, tolerance, labels, first, second, key):
     """State of one attractor, and in `labels` (N,) the component that each attractorlet is known to belong to.
 
     An attractor is connected if and only if the overlap graph of its attractorlets is (Hata 1985; Burch & Hart 1997,
@@ -266,7 +268,7 @@ def decide(linear, unit, areas, tolerance, labels, first, second):
             if labels[i] == labels[j]:
                 continue
             budget = DISC_BUDGET if stage == 0 else POLYGON_BUDGET
-            outcome = pair_test(linear, unit, i, j, tolerance, corners, budget, first, second)
+            outcome = pair_test(linear, unit, i, j, tolerance, corners, budget, first, second, key)
             if outcome == MEET:
                 join(labels, min(labels[i], labels[j]), max(labels[i], labels[j]))
                 if surely_one_piece(labels, areas):
@@ -443,12 +445,13 @@ def decide_column(linear, translations, tolerance, with_gap):
     scratch = np.empty(count, np.int64)
     for node in range(nodes):
         x, y, radius = enclosing_disc(linear, translations[node], parent, letter, product, size, limit)
-        if radius == 0.0:
+        if radius <= POINT * (abs(x) + abs(y)):
             state[node], gap[node] = CONNECTED, 0.0
             continue
         normalize(linear, translations[node], x, y, radius, unit)
-        state[node] = decide(linear, unit, areas, tolerance, labels[node], first[:STACK], second[:STACK])
+        state[node] = decide(linear, unit, areas, tolerance, labels[node], first[:STACK], second[:STACK], key)
         if state[node] == CONNECTED:
+            labels[node] = 0
             gap[node, 0], gap[node, 1] = 0.0, tolerance
         elif with_gap:
             low, high = measure_gap(linear, unit, tolerance, scratch, first, second, ends, key, order)
