@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 Result = TypeVar("Result")
 
 STEP_SECONDS = 0.05
-"""A step ends at the first batch of chunks that is complete after this time, so that a window stays responsive."""
+"""After this time a thread begins no other chunk within a step, so that a window stays responsive."""
 
 
 class Cancelled(Exception):
@@ -34,7 +34,7 @@ def thread_count(threads: int | None = None) -> int:
 def steps(
     function: Callable[[Any], Result], chunks: Sequence[Any], threads: int | None = None
 ) -> Generator[float, None, list[Result]]:
-    """Call `function` on every chunk, a batch of threads at a time.
+    """Call `function` on every chunk, over threads that are joined before each yield.
 
     Parameters
     ----------
@@ -55,19 +55,25 @@ def steps(
     list
         The results in the order of `chunks`, whatever the number of threads.
     """
-    batch = thread_count(threads)
-    results: list[Result] = []
-    while len(results) < len(chunks):
-        started = time.perf_counter()
-        if batch == 1 or len(chunks) == 1:
-            while len(results) < len(chunks) and time.perf_counter() - started < STEP_SECONDS:
-                results.append(function(chunks[len(results)]))
-        else:
-            with ThreadPoolExecutor(batch) as pool:
-                while len(results) < len(chunks) and time.perf_counter() - started < STEP_SECONDS:
-                    # Twice the threads at once, so that one slow chunk leaves the others something to do.
-                    results.extend(pool.map(function, chunks[len(results) : len(results) + 2 * batch]))
-        yield len(results) / len(chunks)
+    workers = min(thread_count(threads), len(chunks))
+    results: list[Result] = [None] * len(chunks)
+    following = iter(range(len(chunks)))
+    done = 0
+
+    def work(deadline: float) -> int:
+        """Take the next chunk that no other thread has, until the time is up; the number of chunks done."""
+        finished = 0
+        for index in following:
+            results[index] = function(chunks[index])
+            finished += 1
+            if time.perf_counter() >= deadline:
+                break
+        return finished
+
+    while done < len(chunks):
+        deadlines = [time.perf_counter() + STEP_SECONDS] * workers
+        done += sum(run(work, deadlines, workers))
+        yield done / len(chunks)
     return results
 
 
