@@ -116,24 +116,27 @@ def test_a_pair_called_apart_is_apart_and_one_called_meeting_is_near(with_polygo
     linear, unit = unit_maps(random_ifs(seed))
     points, letters, spacing = dense(together(linear, unit), 1500)
     corners = outer_polygon(linear, unit, 1.0, 16, 1e-3)[1] if with_polygons else np.empty((0, 2))
-    first, second = np.empty((overlap.STACK, 7)), np.empty((overlap.STACK, 7))
+    first, second, key = np.empty((overlap.STACK, 7)), np.empty((overlap.STACK, 7)), np.empty(overlap.STACK)
     tolerance = 0.01
     for i, j in ((0, 1), (0, 2), (1, 2)):
-        outcome = pair_test(linear, unit, i, j, tolerance, corners, 4000, first, second)
+        outcome = pair_test(linear, unit, i, j, tolerance, corners, 4000, first, second, key)
         apart = np.linalg.norm(points[letters == i][:, None] - points[letters == j][None], axis=-1).min()
         if outcome == APART:
             assert apart > 1e-13
         if outcome == MEET:
             assert apart - 2 * spacing <= 2 * tolerance
-        reverse = pair_test(linear, unit, j, i, tolerance, corners, 4000, first, second)
+        reverse = pair_test(linear, unit, j, i, tolerance, corners, 4000, first, second, key)
         assert {outcome, reverse} != {MEET, APART} or apart <= 2 * tolerance + 2 * spacing
 
 
 def test_a_pair_test_gives_up_at_its_budget():
     linear, unit = unit_maps(SHAPES["Lévy curve"])
-    first, second = np.empty((overlap.STACK, 7)), np.empty((overlap.STACK, 7))
-    assert pair_test(linear, unit, 0, 1, 1e-12, np.empty((0, 2)), 3, first, second) == UNKNOWN
-    assert pair_test(linear, unit, 0, 1, 1e-12, np.empty((0, 2)), 4000, first[:4], second[:4]) in (UNKNOWN, MEET)
+    first, second, key = np.empty((overlap.STACK, 7)), np.empty((overlap.STACK, 7)), np.empty(overlap.STACK)
+    assert pair_test(linear, unit, 0, 1, 1e-12, np.empty((0, 2)), 3, first, second, key) == UNKNOWN
+    assert pair_test(linear, unit, 0, 1, 1e-12, np.empty((0, 2)), 4000, first[:4], second[:4], key[:4]) in (
+        UNKNOWN,
+        MEET,
+    )
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=6), st.randoms(use_true_random=False))
