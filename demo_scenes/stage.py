@@ -75,17 +75,14 @@ def color_world(color: tuple[float, float, float]) -> None:
 
 
 def frame(owner) -> None:
-    """Fill the camera's view with the window of the morph, which is known when its path is."""
+    """Fill the camera's view with the window of the morph."""
     import bpy
-    from mathutils import Vector
 
-    low_x, low_y, high_x, high_y = owner.ifs_morph.output.window
-    bpy.context.view_layer.update()
-    middle = owner.matrix_world @ Vector(((low_x + high_x) / 2, (low_y + high_y) / 2, 0.0))
     camera = bpy.context.scene.camera
     camera.data.type = "ORTHO"
-    camera.data.ortho_scale = owner.scale.x * max(high_x - low_x, high_y - low_y)
-    camera.location.x, camera.location.z = middle.x, middle.z
+    # The window's larger side has length 1 in the object, and its middle is the origin.
+    camera.data.ortho_scale = owner.scale.x
+    camera.location.x, camera.location.z = owner.location.x, owner.location.z
 
 
 def color_maps(owner, colors) -> None:

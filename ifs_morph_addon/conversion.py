@@ -18,6 +18,9 @@ from . import fcurves
 FIT_SAMPLES = 33
 """Places along the path whose attractors the window must hold."""
 
+NORM_SAMPLES = 129
+"""Places along the path that the norms of the maps are taken over."""
+
 
 def identifier(name: str) -> str:
     """Blender's identifier of an enumeration item that core knows by a lower-case name."""
@@ -107,17 +110,37 @@ def path_fingerprint(settings) -> str:
 
 
 def write_shape(shape, ifs: IFS) -> None:
-    """Fill a shape with the maps of an IFS, its weights left to the areas of the maps where they are just that."""
+    """Fill a shape with the maps of an IFS, its weights left to the areas of the maps where they are just that.
+
+    Raises
+    ------
+    IFSError
+        If the shape has more maps and will not let go of them: a library override keeps those of its library.
+    """
+    maps = shape.maps
+    _resize(maps, ifs.count)
     by_area = np.allclose(IFS(ifs.maps).weights, ifs.weights)
-    shape.maps.clear()
-    for k, color in enumerate(attractorlet_colors(ifs.count)):
-        item = shape.maps.add()
+    for k, (item, color) in enumerate(zip(maps, attractorlet_colors(ifs.count), strict=True)):
         item.name = f"Map {k + 1}"
         item.color = color[:3]
         item.weight = 0.0 if by_area else float(ifs.weights[k])
-    shape.maps.foreach_set("matrix", ifs.maps.astype(np.float32).ravel())
+        item.winding = 0
+    maps.foreach_set("matrix", ifs.maps.astype(np.float32).ravel())
     shape.name = ifs.name
     shape.active_index = 0
+
+
+def _resize(maps, count: int) -> None:
+    while len(maps) > count:
+        before = len(maps)
+        maps.remove(before - 1)
+        if len(maps) == before:
+            raise IFSError(
+                f"This library override has {before} maps from its library and cannot have {count}; "
+                "make the object local first."
+            )
+    while len(maps) < count:
+        maps.add()
 
 
 def map_parameters(item) -> np.ndarray:
@@ -137,6 +160,16 @@ def path_samples(owner, count: int = FIT_SAMPLES) -> np.ndarray:
         return fcurves.sample_path(owner, np.linspace(frames[0], frames[-1], count))
     along = np.linspace(0, 1, count)
     return np.stack([along, along, 0 * along], axis=1)
+
+
+def path_norms(owner, morph: Morph) -> np.ndarray:
+    """Largest norm (N,) of each map along the path: what the renderer cuts by, so that no frame is cut differently."""
+    return _path_norms(morph, path_samples(owner, NORM_SAMPLES).tobytes())
+
+
+@lru_cache(maxsize=16)
+def _path_norms(morph: Morph, samples: bytes) -> np.ndarray:
+    return np.max([morph.at(*place).norms for place in np.frombuffer(samples).reshape(-1, 3)], axis=0)
 
 
 def fit_window(owner) -> None:

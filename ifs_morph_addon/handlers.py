@@ -29,9 +29,8 @@ def on_edit(scene, depsgraph):
 def on_other_data(*_):
     """Files hold no pixels of the pictures, and undo may have put older data in place: render all again."""
     outputs.forget()
-    for owner in bpy.data.objects:
-        if owner.ifs_morph.kind != "NONE":
-            owner.update_tag()
+    # In background nothing would be evaluated by itself.
+    outputs.refresh(bpy.context.evaluated_depsgraph_get())
 
 
 HANDLERS = {

@@ -60,7 +60,10 @@ class IFSMORPH_OT_add(bpy.types.Operator):
             write_shape(shape, SHAPES[source])
         settings.path.frame_start, settings.path.frame_end = context.scene.frame_start, context.scene.frame_end
         fit_window(owner)
-        self._place(context, owner)
+        # The plane of the fractal stands upright and faces the front.
+        owner.rotation_euler.x = math.pi / 2
+        owner.scale = (self.size,) * 3
+        owner.location = context.scene.cursor.location
         context.collection.objects.link(owner)
         output.ensure(owner)
         for other in context.selected_objects:
@@ -74,15 +77,6 @@ class IFSMORPH_OT_add(bpy.types.Operator):
         if self.add_light and self.kind == "POINTS" and not _is_lit(context.scene):
             _light(context)
         return {"FINISHED"}
-
-    def _place(self, context, owner):
-        """Stand the plane of the fractal upright, facing the front, its middle at the 3D cursor."""
-        low_x, low_y, high_x, high_y = owner.ifs_morph.output.window
-        scale = self.size / max(high_x - low_x, high_y - low_y)
-        middle = scale * (low_x + high_x) / 2, 0.0, scale * (low_y + high_y) / 2
-        owner.scale = (scale,) * 3
-        owner.rotation_euler = math.pi / 2, 0.0, 0.0
-        owner.location = [place - offset for place, offset in zip(context.scene.cursor.location, middle, strict=True)]
 
     def _frame(self, context, owner):
         """Add a camera in front of the fractal."""

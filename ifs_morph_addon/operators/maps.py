@@ -51,7 +51,10 @@ class IFSMORPH_OT_map_remove(_MapOperator, bpy.types.Operator):
         """Remove the active map; the one after it becomes active."""
         if not 0 <= shape.active_index < len(shape.maps):
             return "There is no active map to remove."
+        before = len(shape.maps)
         shape.maps.remove(shape.active_index)
+        if len(shape.maps) == before:
+            return "This map comes from the library; make the object local to remove it."
         shape.active_index = max(0, min(shape.active_index, len(shape.maps) - 1))
         return None
 

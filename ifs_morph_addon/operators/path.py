@@ -42,7 +42,8 @@ class _KeyPath(LongTask):
         frame_start, frame_end = settings.path.frame_start, settings.path.frame_end
         method = self.method(settings)
         locus = None
-        if method == "planned":
+        low, high = settings.locus.domain
+        if method == "planned" and low <= 0 and high >= 1:
             locus = yield from _part(locus_steps(settings), 0.0, LOCUS_SHARE)
         steps = plan_path_steps(morph_of(settings), locus, frame_end - frame_start + 1, tolerance(settings), method)
         path = yield from _part(steps, LOCUS_SHARE if locus else 0.0, 1.0)

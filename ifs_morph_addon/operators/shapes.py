@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.ifs import IFSError
 from ...core.shapes import SHAPES
 from ..conversion import fit_window, write_shape
 from .poll import ENDS, editable_morph, shape_of
@@ -25,7 +26,11 @@ class IFSMORPH_OT_load_shape(bpy.types.Operator):
             names = ", ".join(SHAPES)
             self.report({"ERROR"}, f"The library has no shape “{self.shape}”; it has {names}.")
             return {"CANCELLED"}
-        write_shape(shape_of(self, context), SHAPES[self.shape])
+        try:
+            write_shape(shape_of(self, context), SHAPES[self.shape])
+        except IFSError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         fit_window(context.object)
         context.object.update_tag()
         return {"FINISHED"}

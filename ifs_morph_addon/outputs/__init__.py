@@ -10,7 +10,7 @@ import bpy
 
 from ...core.ifs import IFSError
 from ..conversion import morph_of
-from . import image, points
+from . import image, materials, points
 
 KINDS = {"IMAGE": image, "POINTS": points}
 
@@ -32,6 +32,7 @@ def refresh(depsgraph) -> None:
             if may_create and is_editable(owner):
                 _part_from_copies(owner, output, claimed)
                 output.ensure(owner)
+            claimed.update(datablock.session_uid for datablock in _own_data(owner, output))
             _draw(owner, evaluated, output, depsgraph.mode == "RENDER")
 
 
@@ -48,13 +49,16 @@ def message(owner) -> str:
 
 
 def morph_objects(depsgraph) -> list:
-    """Pairs of original and evaluated morph objects, those that are only instanced included, by name."""
+    """Pairs of original and evaluated morph objects, those that are only instanced included.
+
+    By name, but those of libraries first: they cannot have other outputs than the ones that came with them.
+    """
     pairs = [
         (datablock.original, datablock)
         for datablock in depsgraph.ids
         if isinstance(datablock, bpy.types.Object) and datablock.ifs_morph.kind != "NONE"
     ]
-    return sorted(pairs, key=lambda pair: pair[0].name_full)
+    return sorted(pairs, key=lambda pair: (is_editable(pair[0]), pair[0].name_full))
 
 
 def is_editable(owner) -> bool:
@@ -62,42 +66,50 @@ def is_editable(owner) -> bool:
     return owner.library is None
 
 
+def _own_data(owner, output) -> list:
+    """Datablocks that no other object may share."""
+    own = [owner.data, *(getattr(owner.ifs_morph.output, name) for name in output.OWN_DATA)]
+    return [datablock for datablock in own if datablock is not None]
+
+
 def _part_from_copies(owner, output, claimed) -> None:
     """Give a copy outputs of its own, where it still has those of the object that it was copied from."""
+    shared = [datablock for datablock in _own_data(owner, output) if datablock.session_uid in claimed]
     settings = owner.ifs_morph.output
-    parted = False
-    for name in output.OWN_DATA:
-        datablock = getattr(settings, name)
-        if datablock is not None and datablock.session_uid in claimed:
-            parted = True
-            output.part(owner, name, datablock)
-    if owner.data.session_uid in claimed:
-        parted = True
-        owner.data = owner.data.copy()
-    if parted:
+    for datablock in shared:
+        copy = datablock.copy()
+        if datablock == owner.data:
+            owner.data = copy
+        for name in output.OWN_DATA:
+            if getattr(settings, name) == datablock:
+                setattr(settings, name, copy)
+        if settings.material == copy:
+            materials.fill_slot(owner, copy, instead_of=datablock)
+    if shared:
         output.connect(owner)
-    own = [getattr(settings, name) for name in output.OWN_DATA]
-    claimed.update(datablock.session_uid for datablock in (owner.data, *own) if datablock is not None)
 
 
 def _draw(owner, evaluated, output, for_render) -> None:
     settings = evaluated.ifs_morph
-    morph, frame, reason = None, None, ""
+    target = output.target(owner)
+    if target is None:
+        return
     try:
         morph = morph_of(settings)
         frame = morph.at(*settings.uv, settings.swell)
         frame.require_attractor()
+        signature = output.signature(owner, settings, morph, frame)
+        if _shown.get(target.session_uid) != signature:
+            target = output.draw(owner, settings, morph, frame, for_render)
+            _shown[target.session_uid] = signature
+        _tell(owner, "")
     except IFSError as error:
-        morph, frame, reason = None, None, str(error)
-    _tell(owner, reason)
-    target = output.target(owner)
-    if target is None:
-        return
-    signature = output.signature(owner, settings, morph, frame)
-    if _shown.get(target.session_uid) == signature:
-        return
-    target = output.draw(owner, settings, morph, frame, for_render)
-    _shown[target.session_uid] = signature
+        # No attractor at this frame, or settings that cannot be used: an empty picture, and the reason.
+        _tell(owner, str(error))
+        signature = output.signature(owner, settings, None, None)
+        if _shown.get(target.session_uid) != signature:
+            target = output.draw(owner, settings, None, None, for_render)
+            _shown[target.session_uid] = signature
 
 
 def _tell(owner, reason: str) -> None:

@@ -4,9 +4,11 @@ import bpy
 import numpy as np
 
 from ...core import raster, shading
+from ...core.ifs import IFSError
 from .. import compat
-from ..conversion import core_name, frame_colors
+from ..conversion import core_name, frame_colors, path_norms
 from . import materials
+from .placing import in_object
 
 OWN_DATA = ("image", "spare_image", "material", "ramp")
 """Datablocks of the output settings that no two objects may share."""
@@ -17,7 +19,7 @@ RAMP = "fire"
 
 
 def add_mesh(name: str):
-    """Make the plane's mesh; `draw` gives it the size of the window."""
+    """Make the plane's mesh; `draw` gives it the proportions of the window."""
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
     mesh.uv_layers.new().data.foreach_set("uv", np.float32([0, 0, 1, 0, 1, 1, 0, 1]))
@@ -69,14 +71,6 @@ def _new_ramp(owner):
     return texture
 
 
-def part(owner, name: str, datablock) -> None:
-    """Replace a datablock that another object has too by a copy."""
-    copy = datablock.copy()
-    setattr(owner.ifs_morph.output, name, copy)
-    if name == "material":
-        materials.fill_slot(owner, copy, instead_of=datablock)
-
-
 def connect(owner) -> None:
     """Have the material show the image, and the object the material."""
     output = owner.ifs_morph.output
@@ -92,19 +86,15 @@ def target(owner):
 def signature(owner, settings, morph, frame) -> tuple:
     """All that the picture depends on."""
     output = settings.output
-    look = {
-        "SET": lambda: tuple(output.color),
-        "DENSITY": lambda: (output.curve, output.exposure, output.gamma, _ramp(owner).tobytes()),
-        "ATTRACTORLET": lambda: frame_colors(settings).tobytes(),
-    }[output.mode]()
     return (
-        frame and (frame.maps.tobytes(), frame.weights.tobytes()),
+        frame and (frame.maps.tobytes(), frame.weights.tobytes(), _norms(owner, morph, frame).tobytes()),
         output.mode,
         tuple(output.resolution),
         output.antialiasing,
         tuple(output.window),
         tuple(output.background),
-        look,
+        _colors(owner, settings).tobytes(),
+        output.mode == "DENSITY" and (output.curve, output.exposure, output.gamma),
     )
 
 
@@ -127,25 +117,54 @@ def _picture(owner, settings, morph, frame) -> np.ndarray:
     """Color times alpha, and alpha, of each pixel: float32 (H, W, 4), row 0 at the bottom."""
     output = settings.output
     width, height = output.resolution
+    background = tuple(output.background)
     if frame is None:
-        return shading.shade(np.zeros((height, width), np.uint8), np.zeros((1, 4)), tuple(output.background))
-    factor = output.antialiasing
-    samples = raster.render(frame, (factor * width, factor * height), tuple(output.window), output.mode.lower())
+        nothing = np.zeros((height, width), dtype=np.uint8)
+        return shading.shade(nothing, "attractorlet", np.zeros((0, 4)), background, premultiplied=True)
+    left, bottom, right, top = output.window
+    if not (left < right and bottom < top):
+        raise IFSError(
+            "The window has no area: its right side must lie right of its left, and its top above its bottom."
+        )
+    mode, factor = output.mode.lower(), output.antialiasing
+    samples = raster.render(
+        frame,
+        (factor * width, factor * height),
+        (left, bottom, right, top),
+        mode,
+        norms=_norms(owner, morph, frame),
+    )
+    return shading.shade(
+        samples,
+        mode,
+        _colors(owner, settings),
+        background,
+        factor,
+        core_name(output.curve, shading.CURVES),
+        output.exposure,
+        output.gamma,
+        premultiplied=True,
+    )
+
+
+def _norms(owner, morph, frame) -> np.ndarray:
+    """Bounds (N,) on the maps' norms: those of the path, but for a frame that somebody took off it."""
+    return np.maximum(path_norms(owner, morph), frame.norms)
+
+
+def _colors(owner, settings) -> np.ndarray:
+    """Colors that the mode needs: one, a ramp, or one for each attractorlet."""
+    output = settings.output
     if output.mode == "SET":
-        colors = np.float32([output.color])
-    elif output.mode == "DENSITY":
-        colors = _ramp(owner)
-        samples = shading.tone_map(samples, core_name(output.curve, shading.CURVES), output.exposure, output.gamma)
-    else:
-        colors = frame_colors(settings)
-    return shading.shade(samples, colors, tuple(output.background), factor)
+        return np.float32(output.color)
+    return _ramp(owner) if output.mode == "DENSITY" else frame_colors(settings)
 
 
 def _ramp(owner) -> np.ndarray:
     """Colors (K, 4) of the object's ramp, from thin to dense."""
     ramp = owner.ifs_morph.output.ramp.color_ramp
-    last = shading.LEVELS - 1
-    return np.array([ramp.evaluate(k / last) for k in range(shading.LEVELS)], dtype=np.float32)
+    last = shading.RAMP_ENTRIES - 1
+    return np.array([ramp.evaluate(k / last) for k in range(shading.RAMP_ENTRIES)], dtype=np.float32)
 
 
 def _image_for(owner, for_render: bool):
@@ -162,7 +181,7 @@ def _fit_plane(mesh, window) -> None:
     if len(mesh.vertices) != 4:
         return  # Somebody shaped the mesh; the image then lies on it by its UV map.
     left, bottom, right, top = window
-    corners = np.float32([(left, bottom, 0), (right, bottom, 0), (right, top, 0), (left, top, 0)])
+    corners = in_object(np.float32([(left, bottom), (right, bottom), (right, top), (left, top)]), window)
     before = np.empty(12, dtype=np.float32)
     mesh.vertices.foreach_get("co", before)
     if not np.array_equal(before, corners.ravel()):

@@ -9,6 +9,7 @@ import numpy as np
 from ...core.cloud import point_cloud
 from ..conversion import frame_colors
 from . import materials
+from .placing import in_object, unit
 
 OWN_DATA = ("nodes", "material")
 """Datablocks of the output settings that no two objects may share; their mesh is one more."""
@@ -45,14 +46,6 @@ def repair(owner) -> None:
     output = owner.ifs_morph.output
     output.nodes = _point_nodes(owner.name)
     connect(owner)
-
-
-def part(owner, name: str, datablock) -> None:
-    """Replace a datablock that another object has too by a copy."""
-    copy = datablock.copy()
-    setattr(owner.ifs_morph.output, name, copy)
-    if name == "material":
-        materials.fill_slot(owner, copy, instead_of=datablock)
 
 
 def connect(owner) -> None:
@@ -125,6 +118,7 @@ def signature(owner, settings, morph, frame) -> tuple:
     output = settings.output
     return (
         frame and (frame.maps.tobytes(), morph.weights_at(0.5).tobytes()),
+        tuple(output.window),
         output.point_count,
         output.point_radius,
         _colors(settings).tobytes(),
@@ -144,11 +138,9 @@ def draw(owner, settings, morph, frame, for_render: bool):
     if len(mesh.vertices) != count or len(mesh.edges):
         mesh.clear_geometry()
         mesh.vertices.add(count)
-    position = np.zeros((count, 3), dtype=np.float32)
-    position[:, :2] = points.position
-    _set(mesh, "position", position)
+    _set(mesh, "position", in_object(points.position, output.window))
     _set(mesh, "attractorlet", points.attractorlet)
-    _set(mesh, "radius", points.radius * np.float32(output.point_radius))
+    _set(mesh, "radius", points.radius * np.float32(output.point_radius / unit(output.window)))
     _set(mesh, "color", _colors(settings)[points.attractorlet])
     # Bounds are found anew and the object is evaluated again.
     mesh.update()

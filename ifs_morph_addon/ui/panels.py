@@ -44,8 +44,8 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
         settings = owner.ifs_morph
         layout.use_property_split = True
         column = layout.column(align=True)
-        column.prop(settings, "uv", index=0, text="U (Linear Parts)")
-        column.prop(settings, "uv", index=1, text="V (Translations)")
+        column.prop(settings, "uv", index=0, text="U")
+        column.prop(settings, "uv", index=1, text="V")
         column.prop(settings, "swell")
         problem = shape_problem(settings) or outputs.message(owner)
         if problem:
