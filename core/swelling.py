@@ -95,13 +95,16 @@ def envelope(needed: np.ndarray, spacing: int) -> tuple[np.ndarray, np.ndarray]:
         return np.array([0, last]), np.array([needed[0], needed[last]])
     for frame in range(spacing, last - spacing // 2, spacing):
         keys[frame] = needed[max(1, frame - spacing) : min(last, frame + spacing + 1)].max()
-    for frame in range(1, last):
+    every = np.arange(last + 1)
+    while True:
         frames = np.array(sorted(keys))
         swells = np.array([keys[k] for k in frames])
-        if curve_at(frames, swells, np.array([frame]))[0] < needed[frame] - 1e-9:
-            keys[frame] = needed[frame]
-    frames = np.array(sorted(keys))
-    swells = np.array([keys[k] for k in frames])
+        missing = needed - curve_at(frames, swells, every)
+        worst = int(np.argmax(missing))
+        if missing[worst] <= 1e-9:
+            break
+        # A new key changes the slopes beside it, so all frames are looked at again.
+        keys[worst] = needed[worst]
     # A key level with both its neighbours changes nothing.
     level = np.zeros(len(frames), dtype=bool)
     level[1:-1] = (swells[1:-1] == swells[:-2]) & (swells[1:-1] == swells[2:])
