@@ -132,13 +132,13 @@ def write_shape(shape, ifs: IFS) -> None:
 
 def _resize(maps, count: int) -> None:
     while len(maps) > count:
-        before = len(maps)
-        maps.remove(before - 1)
-        if len(maps) == before:
+        try:
+            maps.remove(len(maps) - 1)
+        except TypeError as error:
             raise IFSError(
-                f"This library override has {before} maps from its library and cannot have {count}; "
+                f"This library override has {len(maps)} maps from its library and cannot have {count}; "
                 "make the object local first."
-            )
+            ) from error
     while len(maps) < count:
         maps.add()
 

@@ -19,7 +19,11 @@ class _MapOperator:
     def execute(self, context):
         """Change the list of maps, and have the picture follow."""
         shape = shape_of(self, context)
-        problem = self.change(shape)
+        try:
+            problem = self.change(shape)
+        except TypeError:
+            # Blender's word for a collection that is a library override.
+            problem = "A library override keeps the maps of its library in their order; make the object local first."
         if problem:
             self.report({"ERROR"}, problem)
             return {"CANCELLED"}
@@ -51,10 +55,7 @@ class IFSMORPH_OT_map_remove(_MapOperator, bpy.types.Operator):
         """Remove the active map; the one after it becomes active."""
         if not 0 <= shape.active_index < len(shape.maps):
             return "There is no active map to remove."
-        before = len(shape.maps)
         shape.maps.remove(shape.active_index)
-        if len(shape.maps) == before:
-            return "This map comes from the library; make the object local to remove it."
         shape.active_index = max(0, min(shape.active_index, len(shape.maps) - 1))
         return None
 
@@ -73,8 +74,12 @@ class IFSMORPH_OT_map_duplicate(_MapOperator, bpy.types.Operator):
         copy, source = shape.maps.add(), shape.maps[index]
         for name in STORED:
             setattr(copy, name, getattr(source, name))
-        shape.maps.move(len(shape.maps) - 1, index + 1)
-        shape.active_index = index + 1
+        shape.active_index = len(shape.maps) - 1
+        try:
+            shape.maps.move(shape.active_index, index + 1)
+            shape.active_index = index + 1
+        except TypeError:
+            pass  # In a library override the copy stays at the end.
         return None
 
 

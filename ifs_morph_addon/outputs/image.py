@@ -86,16 +86,13 @@ def target(owner):
 def signature(owner, settings, morph, frame) -> tuple:
     """All that the picture depends on."""
     output = settings.output
-    return (
-        frame and (frame.maps.tobytes(), frame.weights.tobytes(), _norms(owner, morph, frame).tobytes()),
-        output.mode,
-        tuple(output.resolution),
-        output.antialiasing,
-        tuple(output.window),
-        tuple(output.background),
-        _colors(owner, settings).tobytes(),
-        output.mode == "DENSITY" and (output.curve, output.exposure, output.gamma),
-    )
+    canvas = tuple(output.resolution), tuple(output.window), tuple(output.background)
+    if frame is None:
+        return canvas
+    shape = frame.maps.tobytes(), frame.weights.tobytes(), _norms(owner, morph, frame).tobytes()
+    look = output.mode, output.antialiasing, _colors(owner, settings).tobytes()
+    tones = (output.curve, output.exposure, output.gamma) if output.mode == "DENSITY" else ()
+    return canvas + shape + look + tones
 
 
 def draw(owner, settings, morph, frame, for_render: bool):

@@ -115,14 +115,11 @@ def target(owner):
 
 def signature(owner, settings, morph, frame) -> tuple:
     """All that the points depend on."""
+    if frame is None:
+        return ()
     output = settings.output
-    return (
-        frame and (frame.maps.tobytes(), morph.weights_at(0.5).tobytes()),
-        tuple(output.window),
-        output.point_count,
-        output.point_radius,
-        _colors(settings).tobytes(),
-    )
+    shape = frame.maps.tobytes(), morph.weights_at(0.5).tobytes(), tuple(output.window)
+    return (*shape, output.point_count, output.point_radius, _colors(settings).tobytes())
 
 
 def draw(owner, settings, morph, frame, for_render: bool):
