@@ -6,12 +6,14 @@ that it comes by (Barnsley & Demko 1985). The draws are fixed: a run of points a
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
 from numba import njit
 
 from . import parallel
+from .words import cumulated
 
 RUN = 2**16
 """Points of one run."""
@@ -22,10 +24,11 @@ GUIDE_BITS = 12
 
 def mark(
     canvas: np.ndarray,
+    root: np.ndarray,
     maps: np.ndarray,
-    borders: np.ndarray,
+    weights: np.ndarray,
     labels: np.ndarray,
-    points: float,
+    samples: float,
     threads: int | None,
 ) -> None:
     """Raise the pixels that the game comes by to the label of the map that led there.
@@ -34,54 +37,59 @@ def mark(
     ----------
     canvas : (height, width) uint8
         Written to.
+    root : (6,)
+        Map to pixels.
     maps : (N, 6)
-        In pixels; they must have an attractor.
-    borders : (N + 1,)
-        Parts of the maps in the unit interval, see `words.cumulated`.
+        They must have an attractor.
+    weights : (N,)
     labels : (N,) uint8
-    points : float
-        How many to play, rounded up to whole runs, and these to a power of two.
+    samples : float
+        Points for each pixel of the canvas; all in all they are rounded up to a power of two.
     threads : int, optional
     """
-    for marks, _ in _games(canvas.shape, maps, borders, labels, _runs(points), threads):
+    for marks, _ in _games(canvas.shape, root, maps, weights, labels, _runs(canvas, samples), threads):
         np.maximum(canvas, marks, out=canvas)
 
 
 def deposit(
-    canvas: np.ndarray, maps: np.ndarray, borders: np.ndarray, points: float, mass: int, threads: int | None
+    canvas: np.ndarray,
+    root: np.ndarray,
+    maps: np.ndarray,
+    weights: np.ndarray,
+    samples: float,
+    mass: int,
+    threads: int | None,
 ) -> None:
-    """Add `mass` to the pixels that the game comes by, in equal parts for each point; otherwise as `mark`.
-
-    `mass` is to be a power of two, larger than the number of points.
-    """
-    runs = _runs(points)
-    for _, hits in _games(canvas.shape, maps, borders, np.zeros(0, np.uint8), runs, threads):
+    """Add `mass`, a large power of two, to the pixels that the game comes by, in equal parts; otherwise as `mark`."""
+    runs = _runs(canvas, samples)
+    for _, hits in _games(canvas.shape, root, maps, weights, np.zeros(0, np.uint8), runs, threads):
         canvas += hits * (mass // (runs * RUN))
 
 
-def _runs(points: float) -> int:
-    return 1 << max(int(np.ceil(np.log2(points / RUN))), 0)
+def _runs(canvas: np.ndarray, samples: float) -> int:
+    return 1 << max(math.ceil(math.log2(samples * canvas.size / RUN)), 0)
 
 
-def _games(shape, maps, borders, labels, runs, threads) -> list[tuple[np.ndarray, np.ndarray]]:
+def _games(shape, root, maps, weights, labels, runs, threads) -> list[tuple[np.ndarray, np.ndarray]]:
     """Marks and hits, one of them empty, of the runs that each thread has played."""
     height, width = shape
+    borders = cumulated(weights)
     guide = np.searchsorted(borders, np.arange(2**GUIDE_BITS) / 2**GUIDE_BITS, side="right") - 1
     a, b, e, c, d, f = maps[0]
     start = np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
 
     def game(share: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
-        marks = np.zeros(shape if len(labels) else (0, 0), np.uint8)
-        hits = np.zeros((0, 0) if len(labels) else shape, np.int64)
-        play(maps, borders, guide, labels, start, *share, height, width, marks.reshape(-1), hits.reshape(-1))
-        return marks, hits
+        marks = np.zeros(height * width if len(labels) else 0, np.uint8)
+        hits = np.zeros(0 if len(labels) else height * width, np.int64)
+        play(root, maps, borders, guide, labels, start, *share, height, width, marks, hits)
+        return marks.reshape(-1, width), hits.reshape(-1, width)
 
     bounds = np.linspace(0, runs, min(parallel.thread_count(threads), runs) + 1).astype(int)
     return parallel.run(game, list(pairwise(bounds)), threads)
 
 
 @njit(nogil=True, cache=True)
-def play(maps, borders, guide, labels, start, first_run, last_run, height, width, marks, hits):
+def play(root, maps, borders, guide, labels, start, first_run, last_run, height, width, marks, hits):
     """Play the runs from `first_run` to `last_run` (exclusive), each from `start`, into `marks` or else `hits`.
 
     Random numbers are by xorshift64* (Vigna 2016), seeded by the number of the run.
@@ -102,8 +110,9 @@ def play(maps, borders, guide, labels, start, first_run, last_run, height, width
                 maps[i, 0] * x + maps[i, 1] * y + maps[i, 2],
                 maps[i, 3] * x + maps[i, 4] * y + maps[i, 5],
             )
-            if 0 <= x < width and 0 <= y < height:
-                pixel = np.int64(y) * width + np.int64(x)
+            across, along = root[0] * x + root[1] * y + root[2], root[3] * x + root[4] * y + root[5]
+            if 0 <= across < width and 0 <= along < height:
+                pixel = np.int64(along) * width + np.int64(across)
                 if labels.shape[0] > 0:
                     marks[pixel] = max(marks[pixel], labels[i])
                 else:

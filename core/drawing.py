@@ -22,6 +22,9 @@ NONE, SOME, ALL = 0, 1, 2
 POINT_MASS = 2**22
 """Units of mass of a set of points."""
 
+STRIP_POINTS = 1_000_000
+"""Points that a strip has at least, so that a thread is worth its while."""
+
 ROUNDING = 0.25
 """A word that is inside the strip by this many pixels has all its points inside, rounding included."""
 
@@ -85,13 +88,14 @@ def _whole_masses(sets: PointSets) -> np.ndarray:
 def _strips(
     canvas: np.ndarray, words: np.ndarray, nearest: np.ndarray, sets: PointSets, threads: int | None
 ) -> list[tuple[int, int]]:
-    """One strip of rows, from first to last (exclusive), for each thread, with about as many points in each."""
-    height, threads = len(canvas), parallel.thread_count(threads)
-    if threads == 1 or len(words) == 0:
+    """Strips of rows, from first to last (exclusive), at most one for each thread, with about as many points in each."""
+    height, points = len(canvas), np.diff(sets.start)[nearest]
+    count = min(parallel.thread_count(threads), 1 + int(points.sum()) // STRIP_POINTS)
+    if count == 1:
         return [(0, height)]
     rows = np.clip(words[:, 5], 0, height - 1).astype(np.int64)
-    points = np.cumsum(np.bincount(rows, weights=np.diff(sets.start)[nearest], minlength=height))
-    borders = np.searchsorted(points, points[-1] * np.arange(1, threads) / threads)
+    points = np.cumsum(np.bincount(rows, weights=points, minlength=height))
+    borders = np.searchsorted(points, points[-1] * np.arange(1, count) / count)
     return [(int(first), int(last)) for first, last in pairwise([0, *borders, height]) if first < last]
 
 

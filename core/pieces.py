@@ -75,7 +75,7 @@ def outlines(
     smallest, largest : float
         Sizes of the first set and, about, of the last, in pixels.
     ratio : float
-        Each set is made of ones that are smaller by this ratio at least; above the square root of 2.
+        Each set is made of ones that are smaller by this ratio at least; the square root of 2 or more.
     """
     a, b, e, c, d, f = maps[0]
     fixed = np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])

@@ -13,9 +13,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from . import chaos, drawing
-from .affine import compose
 from .ifs import IFS, Contractivity, IFSError
-from .pieces import measures, outlines
+from .pieces import LARGEST_GRID, measures, outlines
 from .words import LETTER, WORD_MASS, cumulated, cut_dimensions, cut_words, unit_maps
 
 MODES = ("set", "density", "attractorlet")
@@ -28,16 +27,20 @@ SAMPLES_RANGE = (1 / 16, 64.0)
 LEAST_CELL = 2**-2.5
 """Side in pixels of the cells whose outlines are drawn, at least: a smaller one would hardly find a pixel more."""
 
-PIECE_CELLS = 48
+PIECE_CELLS = 64
 PIECE_RANGE = (16.0, 32.0)
-"""Size of the words that sets of points are drawn under: so many cells, but within a range in pixels."""
+"""Size of the words that sets of points are drawn under: so many cells, within a range in pixels."""
 
 SET_RATIO = 8.0
-SET_WORDS = 64.0
+SET_WORDS = 8.0
 """A set of points is made of sets that are smaller by this ratio, or by less where more than so many words overlap."""
 
 OVERLAP = 16.0
 """Words that may lie over one place of the picture. If an attractor overlaps itself more, its words are made larger."""
+
+MOST_POINTS = 256.0
+LEAST_BUDGET = 4096
+"""Points to draw for each pixel of the picture at most, and words in any case; beyond, words are made larger."""
 
 GROWTH_LIMIT = 12.0
 """Attractors whose words multiply by a higher exponent (`words.cut_dimensions`) are left to the chaos game. One of its
@@ -108,31 +111,42 @@ def render(
     across, along = width / (x1 - x0), height / (y1 - y0)
     maps, center, radius = unit_maps(ifs, least_radius=1e-9 / max(across, along))
     root = np.array([radius * across, 0.0, (center[0] - x0) * across, 0.0, radius * along, (center[1] - y0) * along])
-    borders = cumulated(ifs.weights)
     labels = np.arange(1, ifs.count + 1, dtype=np.uint8) if mode == "attractorlet" else np.ones(ifs.count, np.uint8)
-    canvas = np.zeros((height, width), np.int64 if mode == "density" else np.uint8)
+    weights = ifs.weights
+    if len(norms) == 0:
+        maps, weights, labels = _distinct(maps, weights, labels)
     growth, dimension = cut_dimensions(maps, norms)
-    if growth > GROWTH_LIMIT:
-        in_pixels = _conjugated(maps, root)
-        points = max(samples, CHAOS_POINTS) * width * height
-        if mode == "density":
-            chaos.deposit(canvas, in_pixels, borders, points, TOTAL_MASS, threads)
-        else:
-            chaos.mark(canvas, in_pixels, borders, labels, points, threads)
+    canvas = np.zeros((height, width), np.int64 if mode == "density" else np.uint8)
+    if growth <= GROWTH_LIMIT:
+        _draw(canvas, root, maps, norms, weights, labels, growth, dimension, samples, threads)
+    elif mode == "density":
+        chaos.deposit(canvas, root, maps, weights, max(samples, CHAOS_POINTS), TOTAL_MASS, threads)
     else:
-        side = math.sqrt(width * height)
-        extent = _extent(2 * radius * max(across, along), side, norms)
-        cell, piece, ratio = _resolution(mode, samples, growth, dimension, extent, side)
-        # Half octaves below the extent, so that maps that scale by one or more of them lead from set to set exactly.
-        smallest = extent * 2 ** (round(2 * math.log2(cell / extent)) / 2)
-        shown = np.array([0.0, 0.0, width, height])
-        words = cut_words(root, maps, norms, extent, piece, borders, shown, np.iinfo(np.int64).max)
-        if mode == "density":
-            drawing.deposit(canvas, words, measures(maps, norms, ifs.weights, cell, smallest, piece, ratio), threads)
-        else:
-            letters = words[:, LETTER].astype(np.int64)
-            drawing.mark(canvas, words, labels[letters], outlines(maps, norms, cell, smallest, piece, ratio), threads)
+        chaos.mark(canvas, root, maps, weights, labels, max(samples, CHAOS_POINTS), threads)
     return canvas.astype(np.float32) if mode == "set" else canvas
+
+
+def _draw(canvas, root, maps, norms, weights, labels, growth, dimension, samples, threads) -> None:
+    """Draw words into the canvas, their mass if it holds 64 bit integers and their labels otherwise."""
+    density = canvas.dtype == np.int64
+    height, width = canvas.shape
+    side = math.sqrt(width * height)
+    extent = _extent(2 * max(root[0], root[4]), side, norms)
+    cell, piece, ratio = _resolution(density, samples, growth, dimension, extent, side)
+    shown, borders = np.array([0.0, 0.0, width, height]), cumulated(weights)
+    while True:
+        budget = int(MOST_POINTS * canvas.size / min(piece / cell, LARGEST_GRID) ** 2) + LEAST_BUDGET
+        words = cut_words(root, maps, norms, extent, piece, borders, shown, budget)
+        if len(words) <= budget or piece > extent:
+            break
+        piece *= 4
+    # Sets are half octaves below the extent, so that maps that scale by one or more of these lead from set to set.
+    smallest = extent * 2 ** (round(2 * math.log2(cell / extent)) / 2)
+    if density:
+        drawing.deposit(canvas, words, measures(maps, norms, weights, cell, smallest, piece, ratio), threads)
+    else:
+        letters = words[:, LETTER].astype(np.int64)
+        drawing.mark(canvas, words, labels[letters], outlines(maps, norms, cell, smallest, piece, ratio), threads)
 
 
 def fit_window(shapes: IFS | Iterable[IFS], size: tuple[int, int], margin: float = 0.05) -> Window:
@@ -173,7 +187,7 @@ def fit_window(shapes: IFS | Iterable[IFS], size: tuple[int, int], margin: float
 
 
 def _resolution(
-    mode: str, samples: float, growth: float, dimension: float, extent: float, side: float
+    density: bool, samples: float, growth: float, dimension: float, extent: float, side: float
 ) -> tuple[float, float, float]:
     """Side of the cells, size of the words, and ratio of sizes of the sets of points, from `words.cut_dimensions`.
 
@@ -181,16 +195,23 @@ def _resolution(
     tell more, and its cells are smaller: as many as a filled one would have in a picture of so many pixels.
     """
     cell = samples**-0.5
-    if mode != "density":
+    piece = PIECE_RANGE[1]
+    if not density:
         thin = min(max(dimension, 0.5), 2.0)
         cell = max(min(side * (samples * side * side) ** (-1 / thin), cell), min(LEAST_CELL, cell))
-    cell = 2 ** (round(2 * math.log2(cell)) / 2)
-    piece = min(max(PIECE_CELLS * cell, PIECE_RANGE[0]), PIECE_RANGE[1])
+        cell = 2 ** (round(2 * math.log2(cell)) / 2)
+        piece = min(max(PIECE_CELLS * cell, PIECE_RANGE[0]), PIECE_RANGE[1])
     ratio = SET_RATIO
     if growth > 2:
         # Words of size s lie (extent / s) ** (growth - 2) times over each other.
-        piece = max(piece, extent * math.exp(-math.log(OVERLAP) / (growth - 2)))
-        ratio = max(min(ratio, math.exp(min(math.log(SET_WORDS) / (growth - 2), 3))), 1.5)
+        enough = extent * math.exp(-math.log(OVERLAP) / (growth - 2))
+        # A set has LARGEST_GRID cells a side: beyond, let more words overlap, so that a pixel gets as many points.
+        finest = (extent ** (growth - 2) * LARGEST_GRID**2 / (OVERLAP * samples)) ** (1 / growth)
+        piece = max(piece, min(enough, finest))
+        ratio = max(min(ratio, math.exp(min(math.log(SET_WORDS) / (growth - 2), 3))), math.sqrt(2))
+        if density and piece < extent:
+            # Points of several words share a pixel, so each word can do with fewer.
+            cell *= min(max((extent / piece) ** (growth / 2 - 1), 1.0), 2.0)
     return cell, piece, ratio
 
 
@@ -204,11 +225,15 @@ def _extent(diameter: float, side: float, norms: np.ndarray) -> float:
     return side * 2 ** (math.ceil(2 * math.log2(diameter / side)) / 2)
 
 
-def _conjugated(maps: np.ndarray, root: np.ndarray) -> np.ndarray:
-    """Maps (N, 6) in the coordinates that `root` leads to."""
-    root = root.reshape(2, 3)
-    back = np.concatenate([np.diag(1 / root.diagonal()), (-root[:, 2] / root.diagonal())[:, None]], axis=1)
-    return compose(compose(root, maps.reshape(-1, 2, 3)), back).reshape(-1, 6)
+def _distinct(maps: np.ndarray, weights: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Equal maps as one, with all their weight and the last of their labels."""
+    last = {row.tobytes(): k for k, row in enumerate(maps)}
+    if len(last) == len(maps):
+        return maps, weights, labels
+    kept = np.array(sorted(last.values()))
+    place = {row.tobytes(): k for k, row in enumerate(maps[kept])}
+    member = [place[row.tobytes()] for row in maps]
+    return np.ascontiguousarray(maps[kept]), np.bincount(member, weights=weights), labels[kept]
 
 
 def _checked_size(size: tuple[int, int]) -> tuple[int, int]:

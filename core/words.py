@@ -113,7 +113,7 @@ def cut_words(root, maps, norms, extent, limit, borders, window, budget):
             size = 2 * norm(a, b, c, d)
         if size <= limit and letter >= 0:
             if found == words.shape[0]:
-                words = grown(words, 4 * found)
+                words = grown(words, 2 * found)
             for k in range(9):
                 words[found, k] = stack[top, k]
             words[found, SIZE] = size
