@@ -7,6 +7,7 @@ plan, every frame of the keyed curve is checked at the end, and swell is added w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
 
@@ -40,8 +41,11 @@ SWELL_AVERSION = 40.0
 REPLANS = 60
 """How often the route is planned anew round edges whose interior points fail."""
 
-SAMPLES_PER_NODE = 4
-"""How densely straight segments are tested, beside every quarter of a frame."""
+SAMPLES_PER_NODE = 8
+"""How densely edges and segments are tested at least, per node's spacing."""
+
+SAMPLES_PER_FRAME = 4
+"""How densely the curve is tested at least, per frame."""
 
 SWELL_ATTEMPTS = 10
 """How often the swell curve is raised where a frame fails."""
@@ -164,7 +168,7 @@ def plan_path_steps(
             locus = yield from _part(
                 compute_locus_steps(morph, LOCUS_RESOLUTION, tolerance, threads=threads, gap=False), 0.0, 0.4
             )
-        points = _route_inside(morph, locus, tolerance)
+        points = _route_inside(morph, locus, tolerance, frames)
         if points is None or _length(points) > FAR_LONGER * np.sqrt(2):
             reason = (
                 "No connected path exists in (u,v) on this locus, so the maps swell just enough."
@@ -224,8 +228,9 @@ def _no_swell() -> Keys:
     return Keys(np.array([0.0, 1.0]), zero, zero, zero)
 
 
-def _route_inside(morph: Morph, locus: Locus, tolerance: float) -> np.ndarray | None:
+def _route_inside(morph: Morph, locus: Locus, tolerance: float, frames: int) -> np.ndarray | None:
     """Points (K, 2) of a connected path with few corners, or None."""
+    node = locus.u[1] - locus.u[0]
     ends = [locus.node(0.0, 0.0), locus.node(1.0, 1.0)]
     for (row, column), end in zip(ends, (0.0, 1.0), strict=True):
         if (locus.u[column], locus.v[row]) != (end, end):
@@ -243,9 +248,11 @@ def _route_inside(morph: Morph, locus: Locus, tolerance: float) -> np.ndarray | 
             return None
         rows, columns = np.divmod(route, len(locus.u))
         points = np.column_stack([locus.u[columns], locus.v[rows]])
-        failing = _failing_edges(morph, points, tolerance)
+        # The locus has slivers far thinner than its nodes are apart; a frame must not fall into one.
+        spacing = min(node / SAMPLES_PER_NODE, _length(points) / (SAMPLES_PER_FRAME * (frames - 1)))
+        failing = _failing_edges(morph, points, tolerance, math.ceil(math.sqrt(2) * node / spacing))
         if len(failing) == 0:
-            return _simplified(morph, points, tolerance)
+            return _simplified(morph, points, tolerance, spacing)
         for edge in failing:
             step = np.array([rows[edge + 1] - rows[edge], columns[edge + 1] - columns[edge]])
             k = int(np.flatnonzero((step == STEPS).all(axis=1))[0])
@@ -254,11 +261,11 @@ def _route_inside(morph: Morph, locus: Locus, tolerance: float) -> np.ndarray | 
     return None
 
 
-def _failing_edges(morph: Morph, points: np.ndarray, tolerance: float) -> np.ndarray:
-    """Indices of the edges between successive points (K, 2) that are not connected at an interior point."""
-    shares = (np.arange(1, SAMPLES_PER_NODE) / SAMPLES_PER_NODE)[:, None, None]
+def _failing_edges(morph: Morph, points: np.ndarray, tolerance: float, samples: int) -> np.ndarray:
+    """Indices of the edges between successive points (K, 2) that are not connected at one of the points within."""
+    shares = (np.arange(1, samples) / samples)[:, None, None]
     between = (1 - shares) * points[:-1] + shares * points[1:]
-    held = _connected(morph, between.reshape(-1, 2), tolerance).reshape(SAMPLES_PER_NODE - 1, -1)
+    held = _connected(morph, between.reshape(-1, 2), tolerance).reshape(samples - 1, -1)
     return np.flatnonzero(~held.all(axis=0))
 
 
@@ -274,11 +281,11 @@ def _connected(morph: Morph, uv: np.ndarray, tolerance: float) -> np.ndarray:
     )
 
 
-def _simplified(morph: Morph, points: np.ndarray, tolerance: float) -> np.ndarray:
+def _simplified(morph: Morph, points: np.ndarray, tolerance: float, spacing: float) -> np.ndarray:
     """Fewer points (K, 2): from each the furthest that a connected segment reaches, found by halving."""
 
     def reaches(start: int, end: int) -> bool:
-        steps = max(2, int(SAMPLES_PER_NODE * (end - start)))
+        steps = max(2, math.ceil(float(np.hypot(*(points[end] - points[start]))) / spacing))
         shares = (np.arange(1, steps) / steps)[:, None]
         uv = (1 - shares) * points[start] + shares * points[end]
         # A sparse look first: most segments that fail do so at once.
@@ -331,7 +338,7 @@ def _rounded(morph: Morph, keys: Keys, frames: int, tolerance: float) -> Keys:
         left, right = keys.handle_left.copy(), keys.handle_right.copy()
         left[k], right[k] = points[k] - velocity * before / 3, points[k] + velocity * after / 3
         bent = Keys(time, points, left, right)
-        samples = int(SAMPLES_PER_NODE * max(8.0, (before + after) * (frames - 1))) + 1
+        samples = int(SAMPLES_PER_FRAME * max(16.0, (before + after) * (frames - 1))) + 1
         uv = bent.at(np.linspace(time[k - 1], time[k + 1], samples))
         if (np.abs(uv - np.clip(uv, -1, 2)) < 1e-9).all() and _connected(morph, uv, tolerance).all():
             keys = bent

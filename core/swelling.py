@@ -132,5 +132,6 @@ def curve_at(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarra
 
 
 def bezier(p0: np.ndarray, p1: np.ndarray, p2: np.ndarray, p3: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Cubic with control values p0 to p3, at x in [0, 1]; by powers of x, so equal controls give just themselves."""
-    return p0 + x * (3 * (p1 - p0) + x * (3 * (p0 - 2 * p1 + p2) + x * (p3 - p0 + 3 * (p1 - p2))))
+    """Cubic with control values p0 to p3, at x in [0, 1]; equal controls give themselves, and ends are exact."""
+    inside = p0 + x * (3 * (p1 - p0) + x * (3 * (p0 - 2 * p1 + p2) + x * (p3 - p0 + 3 * (p1 - p2))))
+    return np.where(x == 1, p3, inside)
