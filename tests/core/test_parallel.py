@@ -45,7 +45,7 @@ def test_every_chunk_is_done_once(threads):
 @every_count
 def test_progress_rises_to_one(threads):
     told = []
-    finish(steps(lambda k: time.sleep(0.01), range(30), threads), told.append)
+    finish(steps(lambda k: time.sleep(0.005), range(40 * thread_count(threads)), threads), told.append)
     assert told[-1] == 1
     assert all(0 < share <= 1 for share in told)
     assert all(before < after for before, after in pairwise(told))

@@ -119,6 +119,16 @@ def test_the_envelope_is_never_below_what_is_needed(needed, spacing):
     assert fine.min() >= -1e-12
 
 
+def test_the_envelope_where_late_keys_lower_early_slopes():
+    needed = np.array([0, 0.375, 0.75, 0, 0, 0.75, 0, 0.375, 0.875, 0])
+    assert (envelope_curve(needed, 4)[2] >= needed - 1e-9).all()
+    random = np.random.default_rng(0)
+    for _ in range(300):
+        needed = np.where(random.uniform(size=150) < 0.4, random.integers(0, 65, 150) / 64, 0.0)
+        needed[[0, -1]] = 0
+        assert (envelope_curve(needed, 6)[2] >= needed - 1e-9).all()
+
+
 @given(needs, st.integers(2, 12))
 def test_the_keys_of_the_envelope(needed, spacing):
     needed = np.array(needed)
