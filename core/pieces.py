@@ -25,8 +25,10 @@ SIZES_PER_OCTAVE = 2
 LARGEST_GRID = 512
 """Cells along each side of a piece at most; a larger piece gets larger cells."""
 
-HULL_ROUNDS = 40
-"""Rounds of `hull_points`; what a round adds shrinks as the maps do."""
+HULL_DIRECTIONS = 24
+HULL_ROUNDS = 24
+"""Of `hull_points`. The maps turn directions into others, so more are followed than are wanted; what one more round
+adds shrinks as the maps do."""
 
 INSET = 0.005
 """How far the points of the smallest outline are drawn in, as a share of its size. A piece that ends where a pixel does
@@ -122,8 +124,8 @@ def nearest_sets(words, scale, smallest, count):
 def hull_points(maps, point):
     """Points of the attractor that nearly reach furthest in eight directions.
 
-    The images of the furthest points of the attractor hold its furthest points: start with eight times one point of
-    the attractor, and replace them by the furthest images of all, again and again.
+    The images of the furthest points of the attractor hold its furthest points. So start with one point of it for
+    each of `HULL_DIRECTIONS`, and replace each by the furthest image of any, again and again.
 
     Parameters
     ----------
@@ -136,23 +138,28 @@ def hull_points(maps, point):
     (8, 3)
         x, y and a mass of one eighth.
     """
-    points, previous = np.empty((8, 3)), np.empty((8, 3))
-    for k in range(8):
-        points[k, 0], points[k, 1], points[k, 2] = point[0], point[1], 1 / 8
+    # Columns: the point, the direction, and how far the point reaches in it.
+    points, previous = np.empty((HULL_DIRECTIONS, 5)), np.empty((HULL_DIRECTIONS, 2))
+    for k in range(HULL_DIRECTIONS):
+        angle = 2 * math.pi * k / HULL_DIRECTIONS
+        points[k, 0], points[k, 1], points[k, 2], points[k, 3] = point[0], point[1], math.cos(angle), math.sin(angle)
+        points[k, 4] = points[k, 0] * points[k, 2] + points[k, 1] * points[k, 3]
     for _ in range(HULL_ROUNDS):
-        for k in range(8):
+        for k in range(HULL_DIRECTIONS):
             previous[k, 0], previous[k, 1] = points[k, 0], points[k, 1]
-        for k in range(8):
-            cos, sin = math.cos(math.pi * k / 4), math.sin(math.pi * k / 4)
-            furthest = -np.inf
-            for i in range(maps.shape[0]):
-                for j in range(8):
-                    x = maps[i, 0] * previous[j, 0] + maps[i, 1] * previous[j, 1] + maps[i, 2]
-                    y = maps[i, 3] * previous[j, 0] + maps[i, 4] * previous[j, 1] + maps[i, 5]
-                    if cos * x + sin * y > furthest + TIE:
-                        furthest = cos * x + sin * y
-                        points[k, 0], points[k, 1] = x, y
-    return points
+        for i in range(maps.shape[0]):
+            for j in range(HULL_DIRECTIONS):
+                x = maps[i, 0] * previous[j, 0] + maps[i, 1] * previous[j, 1] + maps[i, 2]
+                y = maps[i, 3] * previous[j, 0] + maps[i, 4] * previous[j, 1] + maps[i, 5]
+                for k in range(HULL_DIRECTIONS):
+                    reach = points[k, 2] * x + points[k, 3] * y
+                    if reach > points[k, 4] + TIE:
+                        points[k, 0], points[k, 1], points[k, 4] = x, y, reach
+    kept = np.empty((8, 3))
+    for k in range(8):
+        kept[k, 0], kept[k, 1] = points[k * HULL_DIRECTIONS // 8, 0], points[k * HULL_DIRECTIONS // 8, 1]
+        kept[k, 2] = 1 / 8
+    return kept
 
 
 @njit(nogil=True, cache=True)

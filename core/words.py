@@ -59,7 +59,7 @@ def unit_maps(ifs: IFS, least_radius: float) -> tuple[np.ndarray, np.ndarray, fl
 
 def cumulated(weights: np.ndarray) -> np.ndarray:
     """Borders (N + 1,) of the parts, 0 to 1, that the maps have in an address."""
-    borders = np.concatenate([[0.0], np.cumsum(weights / weights.sum())])
+    borders = np.concatenate([[0.0], np.minimum(np.cumsum(weights / weights.sum()), 1.0)])
     borders[np.flatnonzero(weights)[-1] + 1 :] = 1.0
     return borders
 
