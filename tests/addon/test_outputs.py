@@ -8,7 +8,7 @@ from core.cloud import point_cloud
 from core.morph import Morph
 from core.raster import render
 from core.shapes import SHAPES
-from tests.addon.support import activate, add, attribute, content, picture, show
+from tests.addon.support import activate, add, attribute, content, picture, pixels, show
 
 KINDS = ("IMAGE", "POINTS")
 
@@ -291,3 +291,23 @@ def test_instanced_morphs_are_rendered(scene):
     owner.ifs_morph.uv = 1, 1
     show()
     assert content(owner) != before
+
+
+def test_rendered_plane_has_the_colors_of_the_picture(scene, tmp_path):
+    owner = add("IMAGE", size=16)
+    output = owner.ifs_morph.output
+    output.mode = "SET"
+    output.background = 0.8, 0.1, 0.1, 0.5
+    scene.camera.data.type = "ORTHO"
+    scene.camera.data.ortho_scale = owner.scale.x
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples = 64
+    scene.render.resolution_x = scene.render.resolution_y = 16
+    scene.render.film_transparent = True
+    scene.render.image_settings.file_format = "OPEN_EXR"
+    scene.render.image_settings.color_mode = "RGBA"
+    scene.render.filepath = str(tmp_path / "still.exr")
+    bpy.ops.render.render(write_still=True)
+    corner = pixels(bpy.data.images.load(scene.render.filepath))[1, 1]
+    # Half of the light passes through a background of alpha one half; the file holds color times alpha.
+    np.testing.assert_allclose(corner, (0.4, 0.05, 0.05, 0.5), rtol=0.1)
