@@ -94,11 +94,12 @@ def test_the_straight_line_of_the_gaskets_is_in_pieces():
         assert report.straight.share_disconnected == found.count(DISCONNECTED) / 240
 
 
-@pytest.mark.parametrize("frames", [60, 120])
-def test_a_path_inside_the_locus_needs_no_swell(frames):
+@pytest.mark.parametrize("frames", [60, 240])
+def test_a_path_inside_the_locus_needs_next_to_no_swell(frames):
     path = path_of("gaskets", frames=frames)
-    assert path.report.path.most_swell == 0
-    assert not path.swell_keys.value.any()
+    # Slivers thinner than the samples may cost a frame the least swell there is.
+    assert path.report.path.most_swell <= 1 / 64
+    assert path.report.path.mean_swell < 0.002
     assert path.report.reason == ""
     assert len(path.keys.time) <= 12
 
@@ -116,16 +117,18 @@ def test_the_default_locus_gives_the_same_promise():
     path = plan_path(MORPHS["gaskets"])
     assert states(MORPHS["gaskets"], path).count(CONNECTED) == 240
     assert path.report.straight.share_disconnected > 0.5
+    assert path.report.path.most_swell == 0
+    assert not path.swell_keys.value.any()
 
 
 @pytest.mark.parametrize("frames", [24, 97, 240])
 @pytest.mark.parametrize("name", ["gaskets", "terdragon"])
 def test_between_frames_it_holds_too(name, frames):
-    """Motion blur looks between frames; the plan is tested for whole frames, so there a few may fail."""
+    """Motion blur looks between frames. Swell is made for whole frames, so there a few of others may fail."""
     path = path_of(name, frames=frames)
     times = (np.arange(2 * (frames - 1)) + 0.5) / (2 * (frames - 1))
     found = [connectedness(MORPHS[name].at(*path.at(t))).state for t in times]
-    assert found.count(CONNECTED) >= (0.99 if name == "gaskets" else 0.9) * len(times)
+    assert found.count(CONNECTED) >= (1 if name == "gaskets" else 0.9) * len(times)
 
 
 @every_morph
@@ -133,7 +136,7 @@ def test_between_frames_it_holds_too(name, frames):
 def test_the_ends_are_the_users_own_shapes(name, method):
     path = path_of(name, method)
     assert path.at(0) == (0, 0, 0)
-    assert path.at(1) == pytest.approx((1, 1, 0), abs=1e-14)
+    assert path.at(1) == (1, 1, 0)
     assert path.at(-3) == path.at(0)
     assert path.at(7) == path.at(1)
     keys = path.swell_keys
@@ -342,9 +345,9 @@ def test_a_locus_of_another_domain_will_do():
 
 @pytest.mark.parametrize("name", ["gaskets", "terdragon"])
 def test_the_path_does_not_depend_on_threads(name):
-    one = plan_path(MORPHS[name], locus_of(name), 60, threads=1)
+    one = plan_path(MORPHS[name], locus_of(name), 30, threads=1)
     for threads in (2, 3):
-        other = plan_path(MORPHS[name], locus_of(name), 60, threads=threads)
+        other = plan_path(MORPHS[name], locus_of(name), 30, threads=threads)
         for keys in ("keys", "swell_keys"):
             for part in ("time", "value", "handle_left", "handle_right"):
                 assert getattr(getattr(one, keys), part).tobytes() == getattr(getattr(other, keys), part).tobytes()
