@@ -88,7 +88,7 @@ def _whole_masses(sets: PointSets) -> np.ndarray:
 def _strips(
     canvas: np.ndarray, words: np.ndarray, nearest: np.ndarray, sets: PointSets, threads: int | None
 ) -> list[tuple[int, int]]:
-    """Strips of rows, from first to last (exclusive), at most one for each thread, with about as many points in each."""
+    """Strips of rows, from first to last (exclusive), at most one a thread, with about as many points in each."""
     height, points = len(canvas), np.diff(sets.start)[nearest]
     count = min(parallel.thread_count(threads), 1 + int(points.sum()) // STRIP_POINTS)
     if count == 1:

@@ -176,6 +176,10 @@ def nodes(resolution: int, domain: tuple = (-1, 2)) -> tuple[np.ndarray, np.ndar
     axes = []
     for low, high in ranges:
         first, last = math.floor(low * per_unit + 1e-9), math.ceil(high * per_unit - 1e-9)
+        if last - first >= MAX_NODES:
+            raise ValueError(
+                f"The domain {domain} takes {last - first + 1} nodes a side; at most {MAX_NODES} are allowed."
+            )
         axes.append(np.arange(first, max(last, first + 1) + 1) / per_unit)
     return axes[0], axes[1]
 

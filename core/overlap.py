@@ -33,7 +33,7 @@ POLYGON_BUDGET = 4000
 
 STACK = 4096
 GAP_PAIRS = 6000
-"""Pairs of pieces held at once by the pair test and by the gap search."""
+"""Pairs of pieces held at once by the pair test, and by the gap search beside those it starts with."""
 
 GAP_PRECISION = 0.05
 """The gap is measured until pieces are this small beside their distance."""
@@ -323,8 +323,8 @@ def measure_gap(linear, unit, tolerance, labels, first, second, ends, key, order
         As in `pair_test`.
     labels : (N,)
         Components; written over.
-    first, second, ends, key, order : (GAP_PAIRS, 7) twice, (GAP_PAIRS, 3), (GAP_PAIRS,) twice
-        Work space.
+    first, second, ends, key, order : (M, 7) twice, (M, 3), (M,) twice
+        Work space, with room for more than all pairs of attractorlets.
 
     Returns
     -------
@@ -438,9 +438,10 @@ def decide_column(linear, translations, tolerance, with_gap):
         state[:] = CONNECTED
         gap[:] = 0.0
         return state, gap, labels
-    first, second = np.empty((GAP_PAIRS, 7)), np.empty((GAP_PAIRS, 7))
-    ends, order = np.empty((GAP_PAIRS, 3), np.int64), np.empty(GAP_PAIRS, np.int64)
-    key = np.empty(GAP_PAIRS)
+    room = GAP_PAIRS + count * (count - 1) // 2
+    first, second = np.empty((room, 7)), np.empty((room, 7))
+    ends, order = np.empty((room, 3), np.int64), np.empty(room, np.int64)
+    key = np.empty(room)
     unit = np.empty((count, 2))
     scratch = np.empty(count, np.int64)
     for node in range(nodes):

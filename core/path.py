@@ -168,15 +168,15 @@ def plan_path_steps(
             locus = yield from _part(
                 compute_locus_steps(morph, LOCUS_RESOLUTION, tolerance, threads=threads, gap=False), 0.0, 0.4
             )
-        points = _route_inside(morph, locus, tolerance, frames)
+        points = yield from _part(_route_inside_steps(morph, locus, tolerance, frames), 0.4, 0.5)
         if points is None or _length(points) > FAR_LONGER * np.sqrt(2):
             reason = (
-                "No connected path exists in (u,v) on this locus, so the maps swell just enough."
+                "No connected path was found in (u,v), so the maps swell."
                 if points is None
                 else "The connected path in (u,v) is far longer than the straight line, so the maps swell instead."
             )
             u, v = nodes(SWELL_RESOLUTION)
-            field = yield from _part(least_swell_field_steps(morph, u, v, tolerance, threads=threads), 0.4, 0.7)
+            field = yield from _part(least_swell_field_steps(morph, u, v, tolerance, threads=threads), 0.5, 0.7)
             points = _route_of_least_swell(u, v, field)
         keys = _rounded(morph, _straight_keys(points, frames), frames, tolerance)
     swell_keys = _no_swell()
@@ -228,8 +228,10 @@ def _no_swell() -> Keys:
     return Keys(np.array([0.0, 1.0]), zero, zero, zero)
 
 
-def _route_inside(morph: Morph, locus: Locus, tolerance: float, frames: int) -> np.ndarray | None:
-    """Points (K, 2) of a connected path with few corners, or None."""
+def _route_inside_steps(
+    morph: Morph, locus: Locus, tolerance: float, frames: int
+) -> Generator[float, None, np.ndarray | None]:
+    """Points (K, 2) of a connected path with few corners, or None; in steps."""
     node = locus.u[1] - locus.u[0]
     ends = [locus.node(0.0, 0.0), locus.node(1.0, 1.0)]
     for (row, column), end in zip(ends, (0.0, 1.0), strict=True):
@@ -242,7 +244,8 @@ def _route_inside(morph: Morph, locus: Locus, tolerance: float, frames: int) -> 
     start, goal = (row * len(locus.u) + column for row, column in ends)
     if not inside.flat[start] or not inside.flat[goal]:
         return None
-    for _ in range(REPLANS):
+    for attempt in range(REPLANS):
+        yield attempt / REPLANS
         route = cheapest_route(cost, closed, start, goal)
         if len(route) == 0:
             return None
@@ -252,7 +255,7 @@ def _route_inside(morph: Morph, locus: Locus, tolerance: float, frames: int) -> 
         spacing = min(node / SAMPLES_PER_NODE, _length(points) / (SAMPLES_PER_FRAME * (frames - 1)))
         failing = _failing_edges(morph, points, tolerance, math.ceil(math.sqrt(2) * node / spacing))
         if len(failing) == 0:
-            return _simplified(morph, points, tolerance, spacing)
+            return (yield from _simplified_steps(morph, points, tolerance, spacing))
         for edge in failing:
             step = np.array([rows[edge + 1] - rows[edge], columns[edge + 1] - columns[edge]])
             k = int(np.flatnonzero((step == STEPS).all(axis=1))[0])
@@ -281,8 +284,10 @@ def _connected(morph: Morph, uv: np.ndarray, tolerance: float) -> np.ndarray:
     )
 
 
-def _simplified(morph: Morph, points: np.ndarray, tolerance: float, spacing: float) -> np.ndarray:
-    """Fewer points (K, 2): from each the furthest that a connected segment reaches, found by halving."""
+def _simplified_steps(
+    morph: Morph, points: np.ndarray, tolerance: float, spacing: float
+) -> Generator[float, None, np.ndarray]:
+    """Fewer points (K, 2): from each the furthest that a connected segment reaches, found by halving; in steps."""
 
     def reaches(start: int, end: int) -> bool:
         steps = max(2, math.ceil(float(np.hypot(*(points[end] - points[start]))) / spacing))
@@ -297,6 +302,7 @@ def _simplified(morph: Morph, points: np.ndarray, tolerance: float, spacing: flo
         if reaches(kept[-1], high):
             low = high
         while high - low > 1:
+            yield 1.0
             middle = (low + high) // 2
             if reaches(kept[-1], middle):
                 low = middle

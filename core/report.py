@@ -94,6 +94,7 @@ class PathReport:
         lines = [_sentence("The path", self.path)]
         if self.reason:
             lines.append(self.reason)
+        lines += self._failures()
         lines += _swell_sentences(self.path)
         if self.method != "straight unswollen":
             lines.append(_sentence("The straight line without swell", self.straight))
@@ -101,6 +102,17 @@ class PathReport:
             maps = ", ".join(str(i + 1) for i in self.flips)
             lines.append(f"Flattened half-way, since only one end reflects: map {maps}.")
         return "\n".join(lines)
+
+    def _failures(self) -> list[str]:
+        """What swell could not mend."""
+        broken = np.flatnonzero(self.path.state != Connectedness.CONNECTED)
+        if self.method == "straight unswollen" or len(broken) == 0:
+            return []
+        ends = [name for name, frame in (("initial", 0), ("final", len(self.path.state) - 1)) if frame in broken]
+        lines = [f"The {' and the '.join(ends)} shape is not in one piece itself."] if ends else []
+        if len(broken) > len(ends):
+            lines.append(f"At {len(broken) - len(ends)} frames no swell was found that mends the shape.")
+        return lines
 
 
 def check_frames(
@@ -119,6 +131,11 @@ def check_frames(
         u, v and swell of each frame.
     tolerance : float
         Relative to the enclosing diameter of each frame's attractor.
+
+    Raises
+    ------
+    ValueError
+        If there are no frames.
     """
     return parallel.finish(check_frames_steps(morph, uv_swell, tolerance, threads), progress)
 
@@ -128,6 +145,8 @@ def check_frames_steps(
 ) -> Generator[float, None, FrameCheck]:
     """`check_frames` in steps, each yielding the share done."""
     uv_swell = np.asarray(uv_swell, dtype=float).reshape(-1, 3)
+    if len(uv_swell) == 0:
+        raise ValueError("There are no frames to check.")
     linear, translation = family(morph, uv_swell)
 
     def check(start: int) -> tuple[np.ndarray, np.ndarray]:
@@ -159,8 +178,10 @@ def _sentence(subject: str, check: FrameCheck) -> str:
         parts.append(f"{check.count(Connectedness.UNDECIDED)} undecided")
     if check.count(Connectedness.NO_ATTRACTOR):
         parts.append(f"{check.count(Connectedness.NO_ATTRACTOR)} without an attractor")
-    found = ", ".join(parts) if parts else "all in one piece"
-    return f"{subject}: {frames} frames, {found}, at 1/{pixels} of the shape's size."
+    connected = check.count(Connectedness.CONNECTED)
+    whole = f"{connected if parts else 'all'} in one piece ({100 * connected / frames:.0f}%)"
+    parts.insert(0, whole)
+    return f"{subject}: {frames} frames, {', '.join(parts)}, at 1/{pixels} of the shape's size."
 
 
 def _swell_sentences(check: FrameCheck) -> list[str]:

@@ -18,7 +18,7 @@ def animate(frames: list[Path], target: Path, fps: int) -> None:
     """Join frames to an animated picture that browsers play."""
     pictures = [Image.open(frame).convert("RGB") for frame in frames]
     pictures[0].save(
-        target, save_all=True, append_images=pictures[1:], duration=round(1000 / fps), loop=0, quality=80, method=4
+        target, save_all=True, append_images=pictures[1:], duration=round(1000 / fps), loop=0, quality=80, method=2
     )
 
 

@@ -18,13 +18,16 @@ def start():
     extensions = ROOT / "out" / "blender" / "extensions"
     link = extensions / "system" / "ifs_morph"
     link.parent.mkdir(parents=True, exist_ok=True)
-    if not link.is_symlink():
-        link.symlink_to(ROOT, target_is_directory=True)
+    if link.is_symlink():
+        link.unlink()
+    link.symlink_to(ROOT, target_is_directory=True)
     user = ROOT / "out" / "blender" / "user"
     user.mkdir(exist_ok=True)
     # Both are read once, when Blender is first imported.
     os.environ["BLENDER_SYSTEM_EXTENSIONS"] = str(extensions)
     os.environ["BLENDER_USER_RESOURCES"] = str(user)
+    # Kernels compiled under Blender's name for the extension would not load under core's own.
+    os.environ["NUMBA_CACHE_DIR"] = str(ROOT / "out" / "blender" / "kernels")
     import bpy  # isort: skip -- it brings the module below
     import addon_utils
 
