@@ -105,8 +105,9 @@ def locus_fingerprint(settings) -> str:
 
 
 def path_fingerprint(settings) -> str:
-    """Fingerprint of what the report on a path depends on, apart from its keys."""
-    return fingerprint(settings)
+    """Fingerprint of what the report on a path depends on."""
+    frames = range(settings.path.frame_start, settings.path.frame_end + 1)
+    return fingerprint(settings, fcurves.sample_path(settings.id_data, frames).tolist())
 
 
 def write_shape(shape, ifs: IFS) -> None:

@@ -168,6 +168,8 @@ class IFSMorphLocusSettings(bpy.types.PropertyGroup):
         description="Lowest and highest (u,v) of the locus",
         size=2,
         default=(-1.0, 2.0),
+        min=-8.0,
+        max=9.0,
         soft_min=-4.0,
         soft_max=5.0,
         options=STILL,

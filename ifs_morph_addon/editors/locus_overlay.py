@@ -39,13 +39,6 @@ def to_region(image, region, uv) -> np.ndarray:
     return np.array([view.view_to_region(x, y, clip=False) for x, y in shares], dtype=np.float32)
 
 
-def from_region(image, region, x, y) -> np.ndarray:
-    """Place (u,v) on the picture of a locus at a pixel of the region."""
-    picture = image.ifs_morph_locus
-    shares = np.array(region.view2d.region_to_view(x, y))
-    return (shares * np.array(image.size) - 0.5) * picture.spacing + np.array(picture.lowest)
-
-
 def _draw():
     context = bpy.context
     owner = owner_of_locus(context)

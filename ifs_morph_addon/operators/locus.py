@@ -3,29 +3,34 @@
 import bpy
 import numpy as np
 
+from ...core.connectedness import Connectedness
 from ...core.ifs import IFSError
 from ...core.locus import Locus, compute_locus_steps
 from ..conversion import locus_fingerprint, morph_of, tolerance
 from ..tasks import LongTask
 from .poll import editable_morph, sound_morph
 
-_last: dict[str, Locus] = {}
-"""The locus computed last, by its fingerprint: planning a path needs more of it than its picture."""
+_last: dict[tuple[str, bool], Locus] = {}
+"""The locus computed last, by its fingerprint and whether with gaps: planning needs more of it than its picture."""
 
 
-def locus_steps(settings):
-    """Yield the share done and return the locus of an object's morph; at once if it was the last one computed."""
+def locus_steps(settings, gap: bool = True):
+    """Yield the share done and return the locus of an object's morph; at once if it was the last one computed.
+
+    The picture shows how wide the gaps are; planning a path needs the states alone, which take less time.
+    """
     key = locus_fingerprint(settings)
-    if key not in _last:
-        low, high = settings.locus.domain
-        if low >= high:
-            raise IFSError(f"The domain of the locus runs from {low:g} to {high:g}; its end must be above its start.")
-        locus = yield from compute_locus_steps(
-            morph_of(settings), settings.locus.resolution, tolerance(settings), (low, high)
-        )
-        _last.clear()
-        _last[key] = locus
-    return _last[key]
+    for with_gap in (True, gap):
+        if (key, with_gap) in _last:
+            return _last[key, with_gap]
+    low, high = settings.locus.domain
+    if low >= high:
+        raise IFSError(f"The domain of the locus runs from {low:g} to {high:g}; its end must be above its start.")
+    resolution = settings.locus.resolution
+    locus = yield from compute_locus_steps(morph_of(settings), resolution, tolerance(settings), (low, high), gap=gap)
+    _last.clear()
+    _last[key, gap] = locus
+    return locus
 
 
 def store_locus(owner, locus: Locus) -> None:
@@ -65,7 +70,9 @@ class IFSMORPH_OT_compute_locus(LongTask, bpy.types.Operator):
         owner = context.object
         locus = yield from locus_steps(owner.ifs_morph)
         store_locus(owner, locus)
-        self.report({"INFO"}, f"The shape is connected at {100 * np.mean(locus.state == 0):.1f} % of the locus")
+        self.report(
+            {"INFO"}, f"The shape is connected at {100 * locus.share(Connectedness.CONNECTED):.1f} % of the locus"
+        )
 
 
 class IFSMORPH_OT_show_locus(bpy.types.Operator):

@@ -1,10 +1,12 @@
 """Plan a path through the locus, key it, check what is keyed, remove it."""
 
+from dataclasses import replace
+
 import bpy
 
 from ...core.ifs import IFSError
 from ...core.path import METHODS, plan_path_steps
-from ...core.report import check_frames_steps
+from ...core.report import check_frames, check_frames_steps
 from .. import fcurves
 from ..conversion import core_name, fit_window, morph_of, path_fingerprint, tolerance
 from ..tasks import LongTask
@@ -44,11 +46,15 @@ class _KeyPath(LongTask):
         locus = None
         low, high = settings.locus.domain
         if method == "planned" and low <= 0 and high >= 1:
-            locus = yield from _part(locus_steps(settings), 0.0, LOCUS_SHARE)
+            locus = yield from _part(locus_steps(settings, gap=False), 0.0, LOCUS_SHARE)
         steps = plan_path_steps(morph_of(settings), locus, frame_end - frame_start + 1, tolerance(settings), method)
         path = yield from _part(steps, LOCUS_SHARE if locus else 0.0, 1.0)
         fcurves.write_path(owner, path, frame_start, frame_end)
-        settings.path.report = path.report.text()
+        # What counts is what Blender evaluates, with the F-curves' own precision.
+        keyed = check_frames(
+            morph_of(settings), fcurves.sample_path(owner, range(frame_start, frame_end + 1)), tolerance(settings)
+        )
+        settings.path.report = replace(path.report, path=keyed).text()
         settings.path.inputs = path_fingerprint(settings)
         fit_window(owner)
         self.report({"INFO"}, _headline(settings.path.report))

@@ -56,9 +56,14 @@ def morph_objects(depsgraph) -> list:
     pairs = [
         (datablock.original, datablock)
         for datablock in depsgraph.ids
-        if isinstance(datablock, bpy.types.Object) and datablock.ifs_morph.kind != "NONE"
+        if isinstance(datablock, bpy.types.Object) and _is_morph(datablock)
     ]
     return sorted(pairs, key=lambda pair: (is_editable(pair[0]), pair[0].name_full))
+
+
+def _is_morph(owner) -> bool:
+    """Whether an object shows a morph: its kind says so, and it has the mesh for it."""
+    return owner.ifs_morph.kind != "NONE" and owner.type == "MESH"
 
 
 def is_editable(owner) -> bool:
@@ -103,9 +108,9 @@ def _draw(owner, evaluated, output, for_render) -> None:
             target = output.draw(owner, settings, morph, frame, for_render)
             _shown[target.session_uid] = signature
         _tell(owner, "")
-    except IFSError as error:
+    except (IFSError, ValueError, MemoryError) as error:
         # No attractor at this frame, or settings that cannot be used: an empty picture, and the reason.
-        _tell(owner, str(error))
+        _tell(owner, str(error) or "There is not enough memory for it; lower its resolution or its points.")
         signature = output.signature(owner, settings, None, None)
         if _shown.get(target.session_uid) != signature:
             target = output.draw(owner, settings, None, None, for_render)

@@ -9,7 +9,8 @@ import numpy as np
 def unit(window) -> float:
     """Length in the plane of the attractor that has length 1 in the object."""
     left, bottom, right, top = window
-    return max(right - left, top - bottom)
+    length = max(right - left, top - bottom)
+    return length if length > 0 else 1.0
 
 
 def in_object(points: np.ndarray, window) -> np.ndarray:
