@@ -94,7 +94,8 @@ def of_states(states, gap=0.02, swell=0.0):
 
 
 def test_words_for_all_in_one_piece():
-    assert of_states([0] * 10).text() == "The keyed path: 10 frames, all in one piece (100%), at 1/300 of the shape's size."
+    text = of_states([0] * 10).text()
+    assert text == "The keyed path: 10 frames, all in one piece (100%), at 1/300 of the shape's size."
 
 
 def test_words_for_what_is_wrong():
