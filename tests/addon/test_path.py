@@ -163,7 +163,7 @@ def test_two_morphs_can_have_paths_of_their_own(owner, extension):
 def test_check_reports_on_the_keys_that_are_there(owner, extension):
     bpy.ops.ifs_morph.plan_path()
     fcurves = extension.ifs_morph_addon.fcurves
-    for point in fcurves.path_curves(owner)[0].keyframe_points:
+    for point in fcurves.path_curves(owner)[1].keyframe_points:
         point.interpolation = "CONSTANT"
     scene = bpy.context.scene
     scene.frame_set(6)
@@ -243,7 +243,7 @@ def test_nothing_changes_when_planning_is_cancelled(owner, extension):
     cancelled_after = 1
     while True:
         work = plan(operator, bpy.context)
-        shares = [share for share, _ in zip(work, range(cancelled_after), strict=False)]
+        shares = [share for _, share in zip(range(cancelled_after), work, strict=False)]
         if len(shares) < cancelled_after:
             break  # that was the whole plan
         assert all(0 <= share <= 1 for share in shares)
