@@ -5,7 +5,7 @@ import random
 import numpy as np
 from scipy.spatial import cKDTree
 
-from tests.core.reference import fixed_point
+from tests.core.reference import at, children, fixed_point, norms
 
 
 def shifted(window, size):
@@ -29,20 +29,15 @@ def subdivision(ifs, size, window, fineness, first=None):
     scale = size / (np.array(window[2:]) - window[:2])
     center, radius = ifs.enclosing_disc
     seed = fixed_point(ifs.maps[0])
-    linear, shift = np.eye(2)[None], np.zeros((1, 2))
-    letters = range(ifs.count) if first is None else [first]
+    words = ifs.maps if first is None else ifs.maps[first : first + 1]
     found = []
-    while len(linear):
-        shift = np.concatenate([shift + linear @ ifs.translation[i] for i in letters])
-        linear = np.concatenate([linear @ ifs.linear[i] for i in letters])
-        letters = range(ifs.count)
-        reach = np.linalg.norm(linear, 2, axis=(1, 2)) * radius * scale.max()
-        middle = to_pixels(linear @ center + shift, size, window)
+    while len(words):
+        reach = norms(words) * radius * scale.max()
+        middle = to_pixels(at(words, center), size, window)
         shown = ((middle + reach[:, None] >= 0) & (middle - reach[:, None] <= size)).all(axis=1)
         done = 2 * reach <= fineness
-        take, go_on = shown & done, shown & ~done
-        found.append(to_pixels(linear[take] @ seed + shift[take], size, window))
-        linear, shift = linear[go_on], shift[go_on]
+        found.append(to_pixels(at(words[shown & done], seed), size, window))
+        words = children(words[shown & ~done], ifs.maps)
     return np.concatenate(found)
 
 
@@ -61,12 +56,10 @@ def coverage(picture, reference):
 
 
 def farthest(picture, points):
-    """Return how far a set pixel can be from the nearest point, at its own nearest place, in pixels."""
+    """Return how far a set pixel is from the nearest point, in pixels; at least, where in the pixel is not known."""
     rows, columns = np.nonzero(picture)
-    centers = np.stack([columns, rows], axis=1) + 0.5
-    _, nearest = cKDTree(points).query(centers)
-    outside = np.maximum(np.abs(points[nearest] - centers) - 0.5, 0)
-    return np.linalg.norm(outside, axis=1).max(initial=0)
+    distances, _ = cKDTree(points).query(np.stack([columns, rows], axis=1) + 0.5)
+    return distances.max(initial=0) - 0.5**0.5
 
 
 def chaos_game(ifs, count, seed=1):
