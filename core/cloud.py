@@ -81,11 +81,12 @@ def point_cloud(ifs: IFS, count: int, address_weights: np.ndarray | None = None,
     seeds = maps.reshape(-1, 2, 3) @ [*seed, 1.0]
     borders = cumulated(weights)
     points = Points(np.empty((count, 2), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
+    norms = np.ascontiguousarray(ifs.norms)
     bounds = np.array(RADIUS_RANGE) * radius / math.sqrt(max(count, 1))
 
     def chunk(ends: tuple[int, int]) -> None:
         found = points.position, points.attractorlet, points.radius
-        decode(maps, ifs.norms, seeds, borders, center, radius, bounds, count, *ends, *found)
+        decode(maps, norms, seeds, borders, center, radius, bounds, count, *ends, *found)
 
     chunks = min(parallel.thread_count(threads), count // CHUNK + 1)
     parallel.run(chunk, list(pairwise(np.linspace(0, count, chunks + 1).astype(np.int64))), threads)
