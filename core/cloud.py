@@ -3,6 +3,9 @@
 An *address* is a word that leads to a point. Point k of n has the number (k + 1/2) / n, and the weights part the unit
 interval among the maps, each part again, and so on: the letters of the address are the parts that the number falls into
 (arithmetic decoding). So the address depends on n and the weights alone.
+
+A word whose part has come down to `FEW` points or less goes on with the address that its points have in a cloud of so
+many. Such small clouds are made once for each number of points, and put under all words with as many.
 """
 
 from __future__ import annotations
@@ -17,16 +20,22 @@ from numba import njit
 from . import parallel
 from .enclosure import norm
 from .ifs import IFS
-from .words import IDENTITY, cumulated, grown, unit_maps
+from .words import IDENTITY, LETTER, cumulated, grown, unit_maps
 
-CHUNK = 1 << 15
-"""Points of a chunk at least, so that threads are worth their while."""
+FEW = 256
+"""Points that a word and a small cloud have at most."""
+
+CHUNK = 200_000
+"""Points for a thread at least, so that it is worth its while."""
 
 RADIUS_RANGE = (1 / 16, 2.0)
 """Bounds of the radius of a point, relative to the one that would have all points just fill the enclosing disc."""
 
 INVISIBLE = 1e-9
-"""A word of this size relative to the attractor is a point, even if several addresses start with it."""
+"""A word of this size relative to the attractor is a point, however many addresses start with it."""
+
+FIRST, COUNT = 6, 7
+"""Columns of a table of words between those of the map and LETTER: the index of the first point, and how many there are."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +48,7 @@ class Points:
     attractorlet : (count,) int32
         First letter of the address, the index of the map that the point's attractorlet is the image by.
     radius : (count,) float32
-        Half the size of the piece of the attractor that the point stands for: small where points are dense. The norm
-        of the piece's word, its last letter apart from the others, scaled by the square root of the piece's share.
+        About half the size of the piece of the attractor that the point stands for: small where points are dense.
     """
 
     position: np.ndarray
@@ -75,34 +83,36 @@ def point_cloud(ifs: IFS, count: int, address_weights: np.ndarray | None = None,
     if weights.shape != (ifs.count,) or not (np.isfinite(weights).all() and (weights >= 0).all() and weights.sum() > 0):
         raise ValueError(f"Address weights must be {ifs.count} numbers, none negative and one positive.")
     maps, center, radius = unit_maps(ifs, least_radius=1e-30)
-    # Every point is the image of one point of the attractor: the fixed point of the map with the most weight.
-    a, b, e, c, d, f = maps[np.argmax(weights)]
-    seed = np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
-    seeds = maps.reshape(-1, 2, 3) @ [*seed, 1.0]
-    borders = cumulated(weights)
     points = Points(np.empty((count, 2), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
-    norms = np.ascontiguousarray(ifs.norms)
+    borders = cumulated(weights)
+    words = share_out(maps, borders, count)
+    start, small = small_clouds(maps, np.ascontiguousarray(ifs.norms), borders, _seed(maps, weights), words)
     bounds = np.array(RADIUS_RANGE) * radius / math.sqrt(max(count, 1))
 
-    def chunk(ends: tuple[int, int]) -> None:
+    def chunk(rows: tuple[int, int]) -> None:
         found = points.position, points.attractorlet, points.radius
-        decode(maps, norms, seeds, borders, center, radius, bounds, count, *ends, *found)
+        place(words[slice(*rows)], start, small, center, radius, bounds, *found)
 
-    chunks = min(parallel.thread_count(threads), count // CHUNK + 1)
-    parallel.run(chunk, list(pairwise(np.linspace(0, count, chunks + 1).astype(np.int64))), threads)
+    chunks = min(parallel.thread_count(threads), 1 + count // CHUNK)
+    parallel.run(chunk, list(pairwise(np.linspace(0, len(words), chunks + 1).astype(int))), threads)
     return points
 
 
-@njit(nogil=True, cache=True)
-def decode(maps, norms, seeds, borders, center, radius, bounds, count, begin, end, position, attractorlet, radii):
-    """Find the points from `begin` to `end` (exclusive) of `count`.
+def _seed(maps: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """The point of the attractor that all points are images of: the fixed point of the map with the most weight."""
+    a, b, e, c, d, f = maps[np.argmax(weights)]
+    return np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
 
-    Takes the words depth first, each with its part of the interval from 0 to `count`, and leaves out those whose parts
-    hold none of the points k + 1/2 asked for. So words that several addresses start with are composed only once. A word
-    that is down to one point takes it to where its last letter i takes the seed, `seeds[i]`.
+
+@njit(nogil=True, cache=True)
+def share_out(maps, borders, count):
+    """Words of one letter or more that share out the points from 0 to `count`, as a table (M, 9) in their order.
+
+    Each has FEW points at most.
     """
-    # Columns: the map, the ends of the part, the first letter.
-    stack, top = np.empty((256, 9)), 1
+    words, found = np.empty((256, 9)), 0
+    # Columns of the stack: the map, the ends of the word's part of the interval from 0 to `count`, the first letter.
+    stack, top = np.empty((64 + maps.shape[0], 9)), 1
     for k in range(6):
         stack[0, k] = IDENTITY[k]
     stack[0, 6], stack[0, 7], stack[0, 8] = 0.0, count, -1.0
@@ -111,26 +121,109 @@ def decode(maps, norms, seeds, borders, center, radius, bounds, count, begin, en
         a, b, e = stack[top, 0], stack[top, 1], stack[top, 2]
         c, d, f = stack[top, 3], stack[top, 4], stack[top, 5]
         low, high, letter = stack[top, 6], stack[top, 7], stack[top, 8]
+        first, last = math.ceil(low - 0.5), math.ceil(high - 0.5)
+        if first == last:
+            continue
+        if letter >= 0 and (last - first <= FEW or norm(a, b, c, d) < INVISIBLE):
+            for start in range(first, last, FEW):
+                if found == words.shape[0]:
+                    words = grown(words, 2 * found)
+                words[found, 0], words[found, 1], words[found, 2] = a, b, e
+                words[found, 3], words[found, 4], words[found, 5] = c, d, f
+                words[found, FIRST], words[found, COUNT] = start, min(FEW, last - start)
+                words[found, LETTER] = letter
+                found += 1
+            continue
+        if top + maps.shape[0] > stack.shape[0]:
+            stack = grown(stack, 2 * stack.shape[0] + maps.shape[0])
+        right = high
+        for i in range(maps.shape[0] - 1, -1, -1):
+            left = low + (high - low) * borders[i]
+            p, q, r, s, t, u = maps[i, 0], maps[i, 1], maps[i, 2], maps[i, 3], maps[i, 4], maps[i, 5]
+            stack[top, 0], stack[top, 1], stack[top, 2] = a * p + b * s, a * q + b * t, a * r + b * u + e
+            stack[top, 3], stack[top, 4], stack[top, 5] = c * p + d * s, c * q + d * t, c * r + d * u + f
+            stack[top, 6], stack[top, 7], stack[top, 8] = left, right, letter if letter >= 0 else i
+            right = left
+            top += 1
+    return words[:found]
+
+
+@njit(nogil=True, cache=True)
+def small_clouds(maps, norms, borders, seed, words):
+    """Clouds of as many points as the words have.
+
+    Returns
+    -------
+    start : (FEW + 1,) int64
+        The cloud of n points has the rows from start[n] on, if a word has so many.
+    points : (P, 3)
+        x, y, and the radius, in units of the enclosing disc.
+    """
+    start, end = np.full(FEW + 1, -1, np.int64), 0
+    for w in range(words.shape[0]):
+        count = int(words[w, COUNT])
+        if start[count] < 0:
+            start[count] = end
+            end += count
+    points = np.empty((end, 3))
+    stack = np.empty((256, 9))
+    for count in range(1, FEW + 1):
+        if start[count] >= 0:
+            stack = _decode(maps, norms, borders, seed, count, points[start[count] : start[count] + count], stack)
+    return start, points
+
+
+@njit(nogil=True, cache=True)
+def _decode(maps, norms, borders, seed, count, points, stack):
+    """Fill in a cloud of `count` points, each at the end of the first word that is its alone. Returns the stack.
+
+    A word that is down to one point takes it to where its last letter takes the seed. The letter's norm stands for
+    what the letter does to the word's size.
+    """
+    for k in range(6):
+        stack[0, k] = IDENTITY[k]
+    stack[0, 6], stack[0, 7] = 0.0, count
+    top = 1
+    while top > 0:
+        top -= 1
+        a, b, e = stack[top, 0], stack[top, 1], stack[top, 2]
+        c, d, f = stack[top, 3], stack[top, 4], stack[top, 5]
+        low, high = stack[top, 6], stack[top, 7]
         size = norm(a, b, c, d)
         if top + maps.shape[0] > stack.shape[0]:
             stack = grown(stack, 2 * stack.shape[0] + maps.shape[0])
-        left = low
-        for i in range(maps.shape[0]):
-            right = low + (high - low) * borders[i + 1] if i + 1 < maps.shape[0] else high
+        right = high
+        for i in range(maps.shape[0] - 1, -1, -1):
+            left = low + (high - low) * borders[i]
             first, last = math.ceil(left - 0.5), math.ceil(right - 0.5)
-            start = letter if letter >= 0 else i
-            if last - first == 1 or (last > first and size < INVISIBLE):
-                # A point stands for a part of length 1; area is taken to be spread as weight is.
-                around = radius * size * norms[i] / math.sqrt(right - left)
-                for k in range(max(first, begin), min(last, end)):
-                    position[k, 0] = center[0] + radius * (a * seeds[i, 0] + b * seeds[i, 1] + e)
-                    position[k, 1] = center[1] + radius * (c * seeds[i, 0] + d * seeds[i, 1] + f)
-                    attractorlet[k] = np.int32(start)
-                    radii[k] = min(max(around, bounds[0]), bounds[1])
-            elif first < last and first < end and last > begin:
+            if first < last:
                 p, q, r, s, t, u = maps[i, 0], maps[i, 1], maps[i, 2], maps[i, 3], maps[i, 4], maps[i, 5]
-                stack[top, 0], stack[top, 1], stack[top, 2] = a * p + b * s, a * q + b * t, a * r + b * u + e
-                stack[top, 3], stack[top, 4], stack[top, 5] = c * p + d * s, c * q + d * t, c * r + d * u + f
-                stack[top, 6], stack[top, 7], stack[top, 8] = left, right, start
-                top += 1
-            left = right
+                if last - first == 1 or size < INVISIBLE:
+                    # A point stands for a part of length 1; area is taken to be spread as weight is.
+                    across, along = p * seed[0] + q * seed[1] + r, s * seed[0] + t * seed[1] + u
+                    for k in range(first, last):
+                        points[k, 0], points[k, 1] = a * across + b * along + e, c * across + d * along + f
+                        points[k, 2] = size * norms[i] / math.sqrt(right - left)
+                else:
+                    stack[top, 0], stack[top, 1], stack[top, 2] = a * p + b * s, a * q + b * t, a * r + b * u + e
+                    stack[top, 3], stack[top, 4], stack[top, 5] = c * p + d * s, c * q + d * t, c * r + d * u + f
+                    stack[top, 6], stack[top, 7] = left, right
+                    top += 1
+            right = left
+    return stack
+
+
+@njit(nogil=True, cache=True)
+def place(words, start, small, center, radius, bounds, position, attractorlet, radii):
+    """Put the small clouds under the words."""
+    for w in range(words.shape[0]):
+        a, b, e = radius * words[w, 0], radius * words[w, 1], radius * words[w, 2] + center[0]
+        c, d, f = radius * words[w, 3], radius * words[w, 4], radius * words[w, 5] + center[1]
+        first, count, letter = int(words[w, FIRST]), int(words[w, COUNT]), np.int32(words[w, LETTER])
+        size, begin = norm(a, b, c, d), start[count]
+        for k in range(count):
+            x, y = small[begin + k, 0], small[begin + k, 1]
+            position[first + k, 0] = a * x + b * y + e
+            position[first + k, 1] = c * x + d * y + f
+            attractorlet[first + k] = letter
+            radii[first + k] = min(max(size * small[begin + k, 2], bounds[0]), bounds[1])
