@@ -35,7 +35,7 @@ INVISIBLE = 1e-9
 """A word of this size relative to the attractor is a point, however many addresses start with it."""
 
 FIRST, COUNT = 6, 7
-"""Columns of a table of words between those of the map and LETTER: the index of the first point, and how many there are."""
+"""Columns of a table of words between those of the map and LETTER: the index of the first point, and their number."""
 
 
 @dataclass(frozen=True)
