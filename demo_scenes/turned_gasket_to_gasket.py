@@ -15,6 +15,8 @@ def build(frames: int, size: int):
     owner = add_morph("IMAGE", "turned gasket", "gasket", frames, size)
     color_maps(owner, COLORS)
     owner.ifs_morph.output.mode = "ATTRACTORLET"
+    # Twice the pixels of the render: its own samples do for antialiasing.
     owner.ifs_morph.output.resolution = 2 * size, 2 * size
+    owner.ifs_morph.output.antialiasing = 1
     owner.ifs_morph.output.background = *BACKGROUND, 1.0
     return owner
