@@ -23,6 +23,9 @@ picture. So brightness depends neither on the picture's size or samples nor on t
 
 RAMP_ENTRIES = 256
 
+SHADES = 4096
+"""Colours that a ramp is drawn with; neighbours are too much alike to tell."""
+
 Stops = Sequence[tuple[float, Sequence[float]]]
 
 
@@ -163,39 +166,34 @@ def shade(
         raise ValueError(f"A picture of shape {picture.shape} has no whole squares of {antialiasing} pixels a side.")
     colors = np.asarray(colors, dtype=np.float32)
     background = np.asarray(background, dtype=np.float32)
+    result = np.empty((picture.shape[0] // factor, picture.shape[1] // factor, 4), np.float32)
     if mode == "attractorlet":
         table = np.zeros((256, 4), np.float32)
         table[1 : len(colors) + 1] = colors
         table = _multiplied(_over(table, background))
-    elif mode == "density":
-        values = tone_map(_summed(picture, factor), curve, exposure, gamma)
-        table = _over(colors, background)
+        _in_strips(lambda *rows: mix_labels(picture, table, factor, premultiplied, *rows, result), len(result), threads)
+        return result
+    if mode == "density":
+        if factor > 1:
+            total = np.empty(result.shape[:2], np.int64)
+            _in_strips(lambda *rows: sum_squares(picture, factor, *rows, total), len(result), threads)
+            picture, factor = total, 1
+        picture = tone_map(picture, curve, exposure, gamma)
+        shades = ramp_lookup(list(zip(np.linspace(0, 1, len(colors)), colors, strict=True)), SHADES)
     else:
-        values = _summed(picture, factor) * np.float32(1 / factor**2)
-        table = np.tile(colors, (RAMP_ENTRIES, 1))
-        table[:, 3] *= np.linspace(0, 1, RAMP_ENTRIES)
-        table = _over(table, background)
-    result = np.empty((picture.shape[0] // factor, picture.shape[1] // factor, 4), np.float32)
-
-    def strip(rows: tuple[int, int]) -> None:
-        if mode == "attractorlet":
-            mix_labels(picture, table, factor, premultiplied, *rows, result)
-        else:
-            look_up(values, table, premultiplied, *rows, result)
-
-    borders = np.linspace(0, len(result), parallel.thread_count(threads) + 1).astype(int)
-    parallel.run(strip, list(pairwise(borders)), threads)
+        # A pixel has one color for each number of its squares that are set.
+        shades = np.tile(colors, (factor * factor + 1, 1))
+        shades[:, 3] *= np.linspace(0, 1, factor * factor + 1)
+    table = _over(shades, background)
+    table = _multiplied(table) if premultiplied else table
+    _in_strips(lambda *rows: look_up(picture, factor, table, *rows, result), len(result), threads)
     return result
 
 
-def _summed(picture: np.ndarray, factor: int) -> np.ndarray:
-    """Sums over squares of `factor` pixels a side."""
-    total = picture[::factor, ::factor].copy() if factor > 1 else picture
-    for row in range(factor):
-        for column in range(factor):
-            if row or column:
-                total += picture[row::factor, column::factor]
-    return total
+def _in_strips(function, height: int, threads: int | None) -> None:
+    """Call a function with the first and last row (exclusive) of a strip for each thread."""
+    borders = np.linspace(0, height, parallel.thread_count(threads) + 1).astype(int)
+    parallel.run(lambda rows: function(*rows), list(pairwise(borders)), threads)
 
 
 def _over(colors: np.ndarray, background: np.ndarray) -> np.ndarray:
@@ -211,19 +209,34 @@ def _multiplied(colors: np.ndarray) -> np.ndarray:
 
 
 @njit(nogil=True, cache=True)
-def look_up(values, table, premultiplied, first_row, last_row, result):
-    """Colours of values in [0, 1] (H, W) from a table (K, 4), interpolated linearly."""
-    last = table.shape[0] - 1
+def sum_squares(picture, factor, first_row, last_row, result):
+    """Sums (H, W) over squares of `factor` pixels a side."""
     for row in range(first_row, last_row):
-        for column in range(values.shape[1]):
-            place = values[row, column] * last
-            k = min(int(place), last - 1)
-            share = np.float32(place - k)
+        for column in range(result.shape[1]):
+            total = 0
+            for i in range(row * factor, (row + 1) * factor):
+                for j in range(column * factor, (column + 1) * factor):
+                    total += picture[i, j]
+            result[row, column] = total
+
+
+@njit(nogil=True, cache=True)
+def look_up(picture, factor, table, first_row, last_row, result):
+    """Colours of means over squares of values in [0, 1]: the nearest in a table (K, 4)."""
+    width = result.shape[1]
+    scale = np.float32((table.shape[0] - 1) / (factor * factor))
+    totals = np.empty(width, np.float32)
+    for row in range(first_row, last_row):
+        for column in range(width):
+            totals[column] = 0
+        for i in range(row * factor, (row + 1) * factor):
+            for j in range(factor):
+                for column in range(width):
+                    totals[column] += picture[i, column * factor + j]
+        for column in range(width):
+            k = np.uint32(totals[column] * scale + np.float32(0.5))
             for channel in range(4):
-                result[row, column, channel] = table[k, channel] + (table[k + 1, channel] - table[k, channel]) * share
-            if premultiplied:
-                for channel in range(3):
-                    result[row, column, channel] *= result[row, column, 3]
+                result[row, column, channel] = table[k, channel]
 
 
 @njit(nogil=True, cache=True)
