@@ -239,3 +239,45 @@ def test_object_of_another_type_with_settings_does_no_harm(scene, extension):
     bpy.ops.ifs_morph.repair_output()
     show()
     assert len(owner.data.vertices) == owner.ifs_morph.output.point_count
+
+
+WITHOUT_AREA = [(0, 0, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (1, 1, 0, 0)]
+
+
+@pytest.mark.parametrize("window", WITHOUT_AREA, ids=str)
+def test_window_without_area_is_said(scene, extension, window):
+    owner = add("IMAGE")
+    before = content(owner)
+    owner.ifs_morph.output.fit_window = False
+    owner.ifs_morph.output.window = window
+    show()
+    assert "The window has no area" in sidebar(owner, extension)
+    assert np.isfinite([tuple(vertex.co) for vertex in owner.data.vertices]).all()
+    owner.ifs_morph.output.fit_window = True
+    show()
+    assert content(owner) == before
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("name", "value"), [("uv", (NAN, 0)), ("uv", (0, NAN)), ("swell", NAN)])
+def test_place_that_is_not_a_number_is_said(scene, extension, kind, name, value):
+    owner = add(kind)
+    before = content(owner)
+    setattr(owner.ifs_morph, name, value)
+    show()
+    assert "NaN" in sidebar(owner, extension)
+    owner.ifs_morph.uv, owner.ifs_morph.swell = (0, 0), 0
+    show()
+    assert content(owner) == before
+
+
+def test_weight_that_is_not_a_number_is_said(scene, extension):
+    owner = add("POINTS")
+    before = content(owner)
+    owner.ifs_morph.initial.maps[0].weight = NAN
+    show()
+    assert "weight" in sidebar(owner, extension)
+    owner.ifs_morph.initial.maps[0].weight = 0
+    show()
+    assert "weight" not in sidebar(owner, extension)
+    assert content(owner) == before

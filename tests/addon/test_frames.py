@@ -106,3 +106,16 @@ def test_edits_elsewhere_render_nothing(scene, extension, monkeypatch, kind):
     assert calls == []
     scene.frame_set(5)
     assert len(calls) == 1
+
+
+def test_scenes_at_different_frames_do_not_mix(scene):
+    owner = add("IMAGE")
+    bpy.ops.ifs_morph.key_straight()
+    other = bpy.data.scenes.new("Other")
+    other.collection.objects.link(owner)
+    scene.frame_set(5)
+    five = content(owner)
+    other.frame_set(20)
+    assert content(owner) != five
+    scene.frame_set(5)
+    assert content(owner) == five
