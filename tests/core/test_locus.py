@@ -4,7 +4,7 @@ import threading
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from core.connectedness import Connectedness, connectedness
@@ -41,6 +41,8 @@ def test_zero_and_one_are_nodes(resolution):
 @given(st.integers(2, 300), st.floats(-3, 0), st.floats(0.01, 4), st.floats(-3, 0), st.floats(0.01, 4))
 def test_nodes_of_any_domain_hold_it_and_lie_on_multiples(resolution, u0, u_width, v0, v_width):
     domain = ((u0, u0 + u_width), (v0, v0 + v_width))
+    # A narrow domain that is tall would have more rows than are allowed, see below.
+    assume(v_width / u_width * resolution < MAX_NODES - 2 and max(u_width, v_width) * resolution / u_width < MAX_NODES)
     u, v = nodes(resolution, domain)
     spacing = u[1] - u[0]
     for axis, (low, high) in zip((u, v), domain, strict=True):
@@ -54,6 +56,12 @@ def test_nodes_of_any_domain_hold_it_and_lie_on_multiples(resolution, u0, u_widt
         for whole in (-1, 0, 1):
             if low <= whole <= high:
                 assert whole in axis
+
+
+@pytest.mark.parametrize("domain", [((0, 0.001), (-1, 2)), (-1e6, 1e6)])
+def test_domains_with_too_many_nodes_are_refused(domain):
+    with pytest.raises(ValueError, match="nodes a side"):
+        nodes(511, domain)
 
 
 def test_other_domains():

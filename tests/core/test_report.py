@@ -112,7 +112,9 @@ def test_report_numbers_are_those_of_the_frames():
     broken = states.count(DISCONNECTED)
     assert path.report.path.count(DISCONNECTED) == path.report.straight.count(DISCONNECTED) == broken
     text = path.report.text()
-    assert f"50 frames, {broken} in pieces ({100 * broken / 50:.0f}%" in text
+    whole = 50 - broken
+    expected = f"50 frames, {whole} in one piece ({2 * whole}%), {broken} in pieces ({2 * broken}%"
+    assert expected in text
     assert text.count("in pieces") == 1
     assert "Swell" not in text
 
