@@ -222,6 +222,8 @@ class IFSMorphSettings(bpy.types.PropertyGroup):
         "(0, 0) is the initial shape, (1, 1) the final one",
         size=2,
         default=(0.0, 0.0),
+        min=-10.0,
+        max=10.0,
         soft_min=-1.0,
         soft_max=2.0,
         step=1,

@@ -109,8 +109,8 @@ def _named_attribute(nodes, name, data_type):
 
 
 def target(owner):
-    """Datablock that the attractor goes into."""
-    return owner.data
+    """Datablock that the attractor goes into; None while somebody edits it, when its data belong to the editor."""
+    return None if owner.data.is_editmode else owner.data
 
 
 def signature(owner, settings, morph, frame) -> tuple:
