@@ -1,0 +1,235 @@
+"""How rendering compares with a plain chaos game and with flam3, and how its cost grows. One thread throughout."""
+
+import math
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numba import njit
+
+from core.drawing import deposit, mark
+from core.ifs import IFS
+from core.pieces import measures, outlines
+from core.raster import fit_window, render
+from core.shapes import SHAPES
+from core.words import EVERYWHERE, cumulated, cut_words, unit_maps
+
+HD = (1920, 1080)
+COVERAGE = 0.995
+FINENESS = 0.5
+"""Pieces of the exact subdivision have this diameter, in pixels, at most."""
+
+MOST_PIECES = 100_000_000
+MOST_POINTS = 128_000_000
+"""Of the chaos game: where it has not covered the set by then, it is said to take at least as long."""
+
+FLAME = """<flame name="gasket" time="0" size="1024 1024" center="0.5 0.5" scale="800" quality="{quality}"
+  temporal_samples="1" estimator_radius="0" oversample="1" filter="0.5" brightness="4" gamma="4" background="0 0 0">
+  <xform weight="1" color="0" linear="1" coefs="0.5 0 0 0.5 0 0"/>
+  <xform weight="1" color="0.5" linear="1" coefs="0.5 0 0 0.5 0.5 0"/>
+  <xform weight="1" color="1" linear="1" coefs="0.5 0 0 0.5 0.25 0.4330127"/>
+  <palette count="256" format="RGB">{palette}</palette>
+</flame>
+"""
+
+
+@njit(nogil=True)
+def chaos_game(maps, table, x, y, state, count, picture):
+    """Mark the pixels of `count` points of the chaos game, each map drawn from a table; a good plain one."""
+    height, width = picture.shape
+    for _ in range(count):
+        state ^= state << np.uint64(13)
+        state ^= state >> np.uint64(7)
+        state ^= state << np.uint64(17)
+        i = table[(state >> np.uint64(20)) & np.uint64(4095)]
+        x, y = maps[i, 0] * x + maps[i, 1] * y + maps[i, 2], maps[i, 3] * x + maps[i, 4] * y + maps[i, 5]
+        if 0 <= x < width and 0 <= y < height:
+            picture[int(y), int(x)] = 1
+    return x, y, state
+
+
+@njit(nogil=True)
+def subdivide(word, maps, x, y, fineness, most, picture):
+    """Mark the pixels of one point (x, y) of each piece smaller than `fineness`; return how many pieces there are."""
+    height, width = picture.shape
+    count, top = 0, 1
+    stack = np.empty((10_000, 6))
+    stack[0] = word
+    while top > 0 and count <= most:
+        top -= 1
+        a, b, e, c, d, f = stack[top]
+        size = math.hypot(a + d, c - b) + math.hypot(a - d, b + c)
+        if size <= fineness:
+            across, along = a * x + b * y + e, c * x + d * y + f
+            if 0 <= across < width and 0 <= along < height:
+                picture[int(along), int(across)] = 1
+            count += 1
+            continue
+        for i in range(maps.shape[0]):
+            p, q, r, s, t, u = maps[i]
+            stack[top, 0], stack[top, 1], stack[top, 2] = a * p + b * s, a * q + b * t, a * r + b * u + e
+            stack[top, 3], stack[top, 4], stack[top, 5] = c * p + d * s, c * q + d * t, c * r + d * u + f
+            top += 1
+    return count
+
+
+class View:
+    """A shape in pixels, as the references want it."""
+
+    def __init__(self, ifs, size):
+        self.ifs, self.size = ifs, size
+        x0, y0, x1, _ = self.window = fit_window(ifs, size, margin=0.0537)
+        self.scale = size[0] / (x1 - x0)
+        shift = (ifs.translation + ifs.linear @ (x0, y0) - (x0, y0)) * self.scale
+        self.in_pixels = np.concatenate([ifs.linear, shift[..., None]], axis=-1).reshape(-1, 6)
+        self.maps, center, radius = unit_maps(ifs, 1e-9)
+        self.root = np.array([radius, 0.0, center[0] - x0, 0.0, radius, center[1] - y0]) * self.scale
+        self.table = np.searchsorted(np.cumsum(ifs.weights), (np.arange(4096) + 0.5) / 4096)
+
+    def exact(self):
+        """Return the pixels of the exact subdivision, or None if it has too many pieces."""
+        picture = np.zeros(self.size[::-1], np.uint8)
+        x, y = np.linalg.solve(np.eye(2) - self.maps[0].reshape(2, 3)[:, :2], self.maps[0, [2, 5]])
+        pieces = subdivide(self.root, self.maps, x, y, FINENESS, MOST_PIECES, picture)
+        return picture if pieces <= MOST_PIECES else None
+
+    def play(self, count, picture, start=None):
+        """Play on from where an earlier game ended; return where this one does."""
+        x, y = np.linalg.solve(np.eye(2) - self.ifs.linear[0], self.in_pixels[0, [2, 5]])
+        x, y, state = start or (x, y, 88172645463325252)
+        return chaos_game(self.in_pixels, self.table, x, y, np.uint64(state), count, picture)
+
+    def points_to_cover(self, reference):
+        """Return how many points the chaos game takes to find `COVERAGE` of a reference, to a tenth."""
+        picture, place, count = np.zeros(self.size[::-1], np.uint8), None, 0
+        while count < MOST_POINTS and covered(picture, reference) < COVERAGE:
+            step = max(count // 10, 50_000)
+            place = self.play(step, picture, place)
+            count += step
+        return count
+
+
+def covered(picture, reference):
+    return np.count_nonzero((picture > 0) & (reference > 0)) / np.count_nonzero(reference)
+
+
+def fastest(function, rounds=5):
+    """Return the least time of some calls, in seconds."""
+    function()
+    times = []
+    for _ in range(rounds):
+        started = time.perf_counter()
+        function()
+        times.append(time.perf_counter() - started)
+    return min(times)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_against_chaos(benchmark, figure, name):
+    """The set at 1920 x 1080, as 32 bit floats, against the chaos game that covers as much of it."""
+    view = View(SHAPES[name], HD)
+    reference = view.exact()
+    picture = benchmark.pedantic(render, (view.ifs, HD, view.window), {"threads": 1}, rounds=5, warmup_rounds=1)
+    if reference is None:
+        reference = picture  # What we find ourselves: nothing else is exact where so many pieces overlap.
+    count = view.points_to_cover(reference)
+
+    def chaos():
+        canvas = np.zeros(HD[::-1], np.uint8)
+        view.play(count, canvas)
+        return canvas.astype(np.float32)
+
+    ours = fastest(lambda: render(view.ifs, HD, view.window, threads=1))
+    figure("times as fast", fastest(chaos, 2) / ours)
+    figure("points, millions", count / 1e6)
+    figure("covered", 100 * covered(picture, reference), " %")
+
+
+@pytest.mark.skipif(shutil.which("flam3-render") is None, reason="flam3-render is not installed")
+def test_against_flam3(benchmark, figure, tmp_path):
+    """Points a second of a gasket at 1024 x 1024, one thread each: what a higher quality adds in points and time."""
+    palette = "\n".join("".join(f"{k:02X}{255 - k:02X}80" for k in range(row, row + 8)) for row in range(0, 256, 8))
+
+    def seconds(quality):
+        flame = tmp_path / "gasket.flame"
+        flame.write_text(FLAME.format(quality=quality, palette=palette))
+        options = {"in": flame, "out": tmp_path / "gasket.png", "nthreads": 1, "seed": 1, "verbose": 0}
+        command = ["env", *(f"{key}={value}" for key, value in options.items()), "flam3-render"]
+        started = time.perf_counter()
+        subprocess.run(command, check=True, capture_output=True)
+        return time.perf_counter() - started
+
+    low, high = 5, 105
+    theirs = (high - low) * 1024**2 / (min(seconds(high) for _ in range(2)) - min(seconds(low) for _ in range(2)))
+    view = View(SHAPES["gasket"], (1024, 1024))
+    ours = benchmark.pedantic(lambda: (points_a_second(view, "set"), points_a_second(view, "density")), rounds=1)
+    figure("flam3, millions a second", theirs / 1e6)
+    for mode, rate in zip(("set", "density"), ours, strict=True):
+        figure(mode, rate / 1e6)
+        figure("times as many", rate / theirs)
+
+
+def points_a_second(view, mode):
+    """Return how many points are drawn a second, once they are there."""
+    weights, measured = view.ifs.weights, np.zeros(0)
+    words = cut_words(view.root, view.maps, measured, 0.0, 32.0, cumulated(weights), EVERYWHERE, 10**6)
+    if mode == "set":
+        canvas, labels = np.zeros(view.size[::-1], np.uint8), np.ones(len(words), np.uint8)
+        sets = outlines(view.maps, measured, 0.125, 0.125, 32.0, 8.0)
+        seconds = fastest(lambda: mark(canvas, words, labels, sets, 1), 9)
+    else:
+        canvas = np.zeros(view.size[::-1], np.int64)
+        sets = measures(view.maps, measured, weights, 0.125, 0.125, 32.0, 8.0)
+        seconds = fastest(lambda: deposit(canvas, words, sets, 1), 9)
+    return np.diff(sets.start)[sets.nearest(words)].sum() / seconds
+
+
+@pytest.mark.parametrize("mode", ["set", "density"])
+def test_growth_with_pixels(benchmark, figure, mode):
+    """Time a pixel at 4096 x 4096 over that at 256 x 256: at most 1 where cost grows linearly or less."""
+    ifs = SHAPES["terdragon"]
+    times = {}
+    for side in (256, 512, 1024, 2048, 4096):
+        size = (side, side)
+        times[side] = fastest(lambda size=size: render(ifs, size, mode=mode, threads=1), 3)
+        figure(f"{side} x {side}", times[side] * 1e3, " ms")
+    benchmark.pedantic(render, (ifs, (1024, 1024)), {"mode": mode, "threads": 1}, rounds=3, warmup_rounds=1)
+    figure("a pixel, 4096 over 256", times[4096] / times[256] / 256)
+
+
+@pytest.mark.parametrize("mode", ["set", "density"])
+def test_growth_with_maps(benchmark, figure, mode):
+    """Time at 1024 x 1024 of a square of N = k x k maps, 4 to 64, and of the same for N log N."""
+    times = {}
+    for k in (2, 3, 4, 6, 8):
+        ifs = IFS([[[1 / k, 0, x / k], [0, 1 / k, y / k]] for x in range(k) for y in range(k)])
+        times[k * k] = fastest(lambda ifs=ifs: render(ifs, (1024, 1024), mode=mode, threads=1), 3)
+        figure(f"{k * k} maps", times[k * k] * 1e3, " ms")
+    benchmark.pedantic(render, (ifs, (1024, 1024)), {"mode": mode, "threads": 1}, rounds=3, warmup_rounds=1)
+    figure("64 maps over 4", times[64] / times[4])
+
+
+@pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="only Linux tells")
+def test_memory(benchmark, figure):
+    """What rendering a set at 4096 x 4096 takes at its peak, over the size of the picture that it returns."""
+    script = """
+from pathlib import Path
+from core.raster import render
+from core.shapes import SHAPES
+
+def kilobytes(field):
+    return int(next(line for line in Path("/proc/self/status").read_text().splitlines() if field in line).split()[1])
+
+render(SHAPES["terdragon"], (64, 64))
+Path("/proc/self/clear_refs").write_text("5")  # Peak from here on.
+before = kilobytes("VmRSS")
+picture = render(SHAPES["terdragon"], (4096, 4096))
+print((kilobytes("VmHWM") - before) * 1024 / picture.nbytes)
+"""
+    run = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
+    benchmark.pedantic(render, (SHAPES["terdragon"], (4096, 4096)), rounds=2)
+    figure("times the picture", float(run.stdout))
