@@ -42,9 +42,13 @@ MOST_POINTS = 256.0
 LEAST_BUDGET = 4096
 """Points to draw for each pixel of the picture at most, and words in any case; beyond, words are made larger."""
 
+FIXED_GROWTH = 3.0
+"""Norms by which words multiply by a higher exponent (`words.cut_dimensions`) are not cut by: the pieces of most frames
+would be far smaller than need be. Each frame is cut by itself then."""
+
 GROWTH_LIMIT = 12.0
-"""Attractors whose words multiply by a higher exponent (`words.cut_dimensions`) are left to the chaos game. One of its
-points costs as much as six of a set, but such attractors overlap themselves so often that sets are no gain."""
+"""Attractors whose words multiply by a higher exponent are left to the chaos game. One of its points costs as much as
+six of a set, but such attractors overlap themselves so often that sets are no gain."""
 
 CHAOS_POINTS = 16.0
 """Points of the chaos game for each pixel of the picture, at least."""
@@ -83,7 +87,7 @@ def render(
     norms : (N,), optional
         Upper bounds of the norms of the maps over a whole animation. Where the attractor is cut then depends on them
         instead of on this very IFS, so that no pixel is found in one frame and lost in the next because of the cut.
-        Of no effect where one of them is 1 or more.
+        Of no effect where they are so large that it would take too long, see `FIXED_GROWTH`.
 
     Returns
     -------
@@ -113,9 +117,11 @@ def render(
     root = np.array([radius * across, 0.0, (center[0] - x0) * across, 0.0, radius * along, (center[1] - y0) * along])
     labels = np.arange(1, ifs.count + 1, dtype=np.uint8) if mode == "attractorlet" else np.ones(ifs.count, np.uint8)
     weights = ifs.weights
-    if len(norms) == 0:
+    growth, dimension = cut_dimensions(maps, norms) if len(norms) else (np.inf, np.inf)
+    if growth > FIXED_GROWTH:
+        norms = np.zeros(0)
         maps, weights, labels = _distinct(maps, weights, labels)
-    growth, dimension = cut_dimensions(maps, norms)
+        growth, dimension = cut_dimensions(maps, norms)
     canvas = np.zeros((height, width), np.int64 if mode == "density" else np.uint8)
     if growth <= GROWTH_LIMIT:
         _draw(canvas, root, maps, norms, weights, labels, growth, dimension, samples, threads)
