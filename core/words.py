@@ -33,6 +33,8 @@ DIMENSION_SIZE = 0.5
 DIMENSION_BUDGET = 20_000
 """How small, relative to the attractor, and how many are the words that the dimension is estimated from."""
 
+DIMENSION_PRECISION = 1e-3
+
 
 def unit_maps(ifs: IFS, least_radius: float) -> tuple[np.ndarray, np.ndarray, float]:
     """Maps of an IFS in coordinates in which the unit disc holds its attractor.
@@ -149,17 +151,17 @@ def dimension(large: np.ndarray, small: np.ndarray) -> float:
     similarities that is ``sum(ratio ** d) = 1`` (Moran 1946): there are 2 ** d times as many parts of half the size,
     which may be more than the plane has room for; the equation is used for any d where `large` is `small`.
     """
-
-    def total(d: float) -> float:
-        return float(np.sum(large ** min(d, 1.0) * small ** max(d - 1.0, 0.0)))
-
     low, high = 0.0, 1.0
-    while high < 1000 and total(high) > 1:
+    while high < 1000 and _total(large, small, high) > 1:
         low, high = high, 2 * high
-    for _ in range(20):
+    while high - low > DIMENSION_PRECISION * max(high, 1.0):
         middle = (low + high) / 2
-        low, high = (middle, high) if total(middle) > 1 else (low, middle)
+        low, high = (middle, high) if _total(large, small, middle) > 1 else (low, middle)
     return high
+
+
+def _total(large: np.ndarray, small: np.ndarray, d: float) -> float:
+    return float((large ** min(d, 1.0) * small ** max(d - 1.0, 0.0)).sum())
 
 
 def cut_dimensions(maps: np.ndarray, norms: np.ndarray) -> tuple[float, float]:
@@ -179,4 +181,6 @@ def cut_dimensions(maps: np.ndarray, norms: np.ndarray) -> tuple[float, float]:
     large = words[:, SIZE] / 2
     area = np.abs(words[:, 0] * words[:, 4] - words[:, 1] * words[:, 3])
     small = np.divide(area, large, out=np.zeros_like(area), where=large > 0)
-    return dimension(large, large), dimension(large, small)
+    growth = dimension(large, large)
+    similar = (small >= (1 - DIMENSION_PRECISION) * large).all()
+    return growth, growth if similar else dimension(large, small)
