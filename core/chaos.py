@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from . import parallel
-from .words import cumulated
+from .words import cumulated, fixed_point
 
 RUN = 2**16
 """Points of one run."""
@@ -75,8 +75,7 @@ def _games(shape, root, maps, weights, labels, runs, threads) -> list[tuple[np.n
     height, width = shape
     borders = cumulated(weights)
     guide = np.searchsorted(borders, np.arange(2**GUIDE_BITS) / 2**GUIDE_BITS, side="right") - 1
-    a, b, e, c, d, f = maps[0]
-    start = np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
+    start = fixed_point(maps[0])
 
     def game(share: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
         marks = np.zeros(height * width if len(labels) else 0, np.uint8)

@@ -20,7 +20,7 @@ from numba import njit
 from . import parallel
 from .enclosure import norm
 from .ifs import IFS
-from .words import IDENTITY, LETTER, cumulated, grown, unit_maps
+from .words import IDENTITY, LETTER, cumulated, fixed_point, grown, unit_maps
 
 FEW = 256
 """Points that a word and a small cloud have at most."""
@@ -86,7 +86,9 @@ def point_cloud(ifs: IFS, count: int, address_weights: np.ndarray | None = None,
     points = Points(np.empty((count, 2), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
     borders = cumulated(weights)
     words = share_out(maps, borders, count)
-    start, small = small_clouds(maps, np.ascontiguousarray(ifs.norms), borders, _seed(maps, weights), words)
+    # Every point is the image of one point of the attractor: the fixed point of the map with the most weight.
+    seed = fixed_point(maps[np.argmax(weights)])
+    start, small = small_clouds(maps, np.ascontiguousarray(ifs.norms), borders, seed, words)
     bounds = np.array(RADIUS_RANGE) * radius / math.sqrt(max(count, 1))
 
     def chunk(rows: tuple[int, int]) -> None:
@@ -96,12 +98,6 @@ def point_cloud(ifs: IFS, count: int, address_weights: np.ndarray | None = None,
     chunks = min(parallel.thread_count(threads), 1 + count // CHUNK)
     parallel.run(chunk, list(pairwise(np.linspace(0, len(words), chunks + 1).astype(int))), threads)
     return points
-
-
-def _seed(maps: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """The point of the attractor that all points are images of: the fixed point of the map with the most weight."""
-    a, b, e, c, d, f = maps[np.argmax(weights)]
-    return np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
 
 
 @njit(nogil=True, cache=True)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from .words import MASS, SIZE, WORD_MASS, cumulated, cut_words, grown
+from .words import MASS, SIZE, WORD_MASS, cumulated, cut_words, fixed_point, grown
 
 SIZES_PER_OCTAVE = 2
 
@@ -79,9 +79,7 @@ def outlines(
     ratio : float
         Each set is made of ones that are smaller by this ratio at least; the square root of 2 or more.
     """
-    a, b, e, c, d, f = maps[0]
-    fixed = np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
-    hull = hull_points(maps, fixed)
+    hull = hull_points(maps, fixed_point(maps[0]))
     hull += INSET * (hull.mean(axis=0) - hull)
     return _sets(maps, norms, np.zeros(len(maps) + 1), cell, smallest, largest, ratio, hull, False)
 
@@ -97,9 +95,8 @@ def measures(
 ) -> PointSets:
     """Sets of points with masses that stand for the measure that `weights` (N,) give; otherwise as `outlines`."""
     # The centre of mass of the attractor is the mean of those of its parts: m = sum of p_i w_i(m).
-    a, b, e, c, d, f = weights @ maps
-    center = np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
-    return _sets(maps, norms, cumulated(weights), cell, smallest, largest, ratio, np.array([[*center, 1.0]]), True)
+    center = np.array([[*fixed_point(weights @ maps), 1.0]])
+    return _sets(maps, norms, cumulated(weights), cell, smallest, largest, ratio, center, True)
 
 
 def _sets(maps, norms, borders, cell, smallest, largest, ratio, seed, measure) -> PointSets:

@@ -59,6 +59,12 @@ def unit_maps(ifs: IFS, least_radius: float) -> tuple[np.ndarray, np.ndarray, fl
     return np.concatenate([ifs.linear, shift[..., None]], axis=-1).reshape(-1, 6), center, radius
 
 
+def fixed_point(entries: np.ndarray) -> np.ndarray:
+    """The point (2,) that a map (6,) leaves where it is; of a map of an IFS it belongs to the attractor."""
+    a, b, e, c, d, f = entries
+    return np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
+
+
 def cumulated(weights: np.ndarray) -> np.ndarray:
     """Borders (N + 1,) of the parts, 0 to 1, that the maps have in an address."""
     borders = np.concatenate([[0.0], np.minimum(np.cumsum(weights / weights.sum()), 1.0)])
