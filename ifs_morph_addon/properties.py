@@ -61,6 +61,8 @@ class IFSMorphMap(bpy.types.PropertyGroup):
         size=(2, 3),
         subtype="MATRIX",
         default=((0.5, 0.0, 0.0), (0.0, 0.5, 0.0)),
+        min=-1e6,
+        max=1e6,
         precision=4,
         options=STILL,
         override=LEAF,

@@ -24,7 +24,7 @@ def locus_steps(settings, gap: bool = True):
         if (key, with_gap) in _last:
             return _last[key, with_gap]
     low, high = settings.locus.domain
-    if low >= high:
+    if not low < high:
         raise IFSError(f"The domain of the locus runs from {low:g} to {high:g}; its end must be above its start.")
     resolution = settings.locus.resolution
     locus = yield from compute_locus_steps(morph_of(settings), resolution, tolerance(settings), (low, high), gap=gap)

@@ -29,6 +29,9 @@ def refresh(depsgraph) -> None:
     with _lock:
         for owner, evaluated in morph_objects(depsgraph):
             output = KINDS[owner.ifs_morph.kind]
+            if may_create and owner.data.library is not None:
+                # Blender lets nothing be written into a linked mesh, and does not say so.
+                owner.data = owner.data.copy()
             if may_create and is_editable(owner):
                 _part_from_copies(owner, output, claimed)
                 output.ensure(owner)

@@ -177,6 +177,8 @@ def _fit_plane(mesh, window) -> None:
     """Put the plane's corners where the window's are, if they are not there already."""
     if len(mesh.vertices) != 4:
         return  # Somebody shaped the mesh; the image then lies on it by its UV map.
+    if not np.isfinite(window).all():
+        return  # The message says so; the plane stays as it is.
     left, bottom, right, top = window
     corners = in_object(np.float32([(left, bottom), (right, bottom), (right, top), (left, top)]), window)
     before = np.empty(12, dtype=np.float32)

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from ...core.cloud import point_cloud
+from ...core.ifs import IFSError
 from ..conversion import frame_colors
 from . import materials
 from .placing import in_object, unit
@@ -130,6 +131,8 @@ def draw(owner, settings, morph, frame, for_render: bool):
         mesh.update_tag()
         return mesh
     output = settings.output
+    if not np.isfinite(output.window).all():
+        raise IFSError("The window holds NaN; fit it again, or give it four numbers.")
     points = point_cloud(frame, output.point_count, address_weights=morph.weights_at(0.5))
     count = len(points.position)
     if len(mesh.vertices) != count or len(mesh.edges):

@@ -40,7 +40,6 @@ def at(owner, frame):
     return content(owner)
 
 
-@pytest.mark.parametrize("library", ["IMAGE"], indirect=True)
 @pytest.mark.parametrize("link", [False, True])
 def test_morph_of_another_file_shows_its_frames(library, link):
     file, name, before = library
@@ -95,7 +94,6 @@ def override(file, name):
     return owner
 
 
-@pytest.mark.parametrize("library", ["IMAGE"], indirect=True)
 def test_override_can_be_placed_and_animated(library, extension):
     file, name, before = library
     owner = override(file, name)
@@ -116,7 +114,6 @@ def test_override_with_a_linked_action_says_why_it_cannot_be_keyed(library):
     assert "linked from a library" in reason(bpy.ops.ifs_morph.key_straight)
 
 
-@pytest.mark.parametrize("library", ["IMAGE"], indirect=True)
 def test_override_is_saved(library, tmp_path):
     file, name, before = library
     owner = override(file, name)
