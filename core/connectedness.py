@@ -13,7 +13,7 @@ from enum import IntEnum
 import numpy as np
 from numba import njit
 
-from . import overlap
+from . import decision
 from .affine import compose
 from .ifs import IFS, Contractivity
 
@@ -21,10 +21,10 @@ from .ifs import IFS, Contractivity
 class Connectedness(IntEnum):
     """State of an attractor; also the values of a locus."""
 
-    CONNECTED = overlap.CONNECTED
-    DISCONNECTED = overlap.DISCONNECTED
-    UNDECIDED = overlap.UNDECIDED
-    NO_ATTRACTOR = overlap.NO_ATTRACTOR
+    CONNECTED = decision.CONNECTED
+    DISCONNECTED = decision.DISCONNECTED
+    UNDECIDED = decision.UNDECIDED
+    NO_ATTRACTOR = decision.NO_ATTRACTOR
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ def connectedness(ifs: IFS, tolerance: float = 1 / 300) -> Verdict:
         search ran out, which happens to heavily overlapping, flat maps. NO_ATTRACTOR: certain.
     """
     linear = np.ascontiguousarray(ifs.linear).reshape(-1, 4)
-    state, gap, labels = overlap.decide_column(linear, ifs.translation[None].copy(), float(tolerance), True)
+    state, gap, labels = decision.decide_column(linear, ifs.translation[None].copy(), float(tolerance), True)
     return Verdict(Connectedness(state[0]), (float(gap[0, 0]), float(gap[0, 1])), labels[0])
 
 

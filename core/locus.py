@@ -15,8 +15,8 @@ import numpy as np
 
 from . import parallel
 from .connectedness import Connectedness
+from .decision import decide_column
 from .morph import Morph
-from .overlap import decide_column
 
 COLORS = {
     Connectedness.CONNECTED: (1.0, 1.0, 1.0),

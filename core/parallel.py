@@ -109,3 +109,13 @@ def finish(generator: Generator[float, None, Result], progress: Callable[[float]
         if progress is not None and progress(fraction) is False:
             generator.close()
             raise Cancelled
+
+
+def part(generator: Generator[float, None, Result], start: float, end: float) -> Generator[float, None, Result]:
+    """Pass on the steps of one part of some work, as shares from `start` to `end` of the whole."""
+    while True:
+        try:
+            fraction = next(generator)
+        except StopIteration as done:
+            return done.value
+        yield start + (end - start) * fraction

@@ -15,12 +15,13 @@ import numpy as np
 
 from . import parallel
 from .connectedness import Connectedness
+from .curve import Keys, smooth_keys
+from .decision import is_connected
 from .locus import Locus, compute_locus_steps, nodes
 from .morph import Morph
-from .overlap import decide_column
 from .report import PathReport, check_frames_steps, family
 from .route import STEPS, cheapest_route, clearance
-from .swelling import bezier, envelope, least_swell_field_steps, least_swell_steps, slopes
+from .swelling import envelope, least_swell_field_steps, least_swell_steps
 
 METHODS = ("planned", "straight", "straight unswollen")
 """Through the locus; straight with least swell; straight without swell, the paper's Figure 5."""
@@ -52,34 +53,6 @@ SWELL_ATTEMPTS = 10
 
 SWELL_KEYS = 24
 """Most keys of a swell curve before those that single frames need."""
-
-
-@dataclass(frozen=True, eq=False)
-class Keys:
-    """Keys of a cubic Bezier curve in time, as an F-curve has them.
-
-    The handles lie at exactly a third of the interval in time, so that time is linear along each piece.
-
-    Attributes
-    ----------
-    time : (K,)
-        Ascending from 0 to 1.
-    value, handle_left, handle_right : (K,) or (K, 2)
-        Values of the keys and of the handles before and after them.
-    """
-
-    time: np.ndarray
-    value: np.ndarray
-    handle_left: np.ndarray
-    handle_right: np.ndarray
-
-    def at(self, t: np.ndarray) -> np.ndarray:
-        """Values at the times t (F,), clamped to [0, 1]."""
-        t = np.clip(t, 0.0, 1.0)
-        k = np.clip(np.searchsorted(self.time, t, side="right") - 1, 0, len(self.time) - 2)
-        x = (t - self.time[k]) / (self.time[k + 1] - self.time[k])
-        x = x.reshape(x.shape + (1,) * (self.value.ndim - 1))
-        return bezier(self.value[k], self.handle_right[k], self.handle_left[k + 1], self.value[k + 1], x)
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,10 +138,10 @@ def plan_path_steps(
     reason = ""
     if method == "planned":
         if locus is None:
-            locus = yield from _part(
+            locus = yield from parallel.part(
                 compute_locus_steps(morph, LOCUS_RESOLUTION, tolerance, threads=threads, gap=False), 0.0, 0.4
             )
-        points = yield from _part(_route_inside_steps(morph, locus, tolerance, frames), 0.4, 0.5)
+        points = yield from parallel.part(_route_inside_steps(morph, locus, tolerance, frames), 0.4, 0.5)
         if points is None or _length(points) > FAR_LONGER * np.sqrt(2):
             reason = (
                 "No connected path was found in (u,v), so the maps swell."
@@ -176,30 +149,20 @@ def plan_path_steps(
                 else "The connected path in (u,v) is far longer than the straight line, so the maps swell instead."
             )
             u, v = nodes(SWELL_RESOLUTION)
-            field = yield from _part(least_swell_field_steps(morph, u, v, tolerance, threads=threads), 0.5, 0.7)
+            field = yield from parallel.part(least_swell_field_steps(morph, u, v, tolerance, threads=threads), 0.5, 0.7)
             points = _route_of_least_swell(u, v, field)
         keys = _rounded(morph, _straight_keys(points, frames), frames, tolerance)
     swell_keys = _no_swell()
     if method != "straight unswollen":
-        swell_keys = yield from _part(_swell_steps(morph, keys, frames, tolerance, threads), 0.7, 0.9)
+        swell_keys = yield from parallel.part(_swell_steps(morph, keys, frames, tolerance, threads), 0.7, 0.9)
     times = np.arange(frames) / (frames - 1)
-    checked = yield from _part(
+    checked = yield from parallel.part(
         check_frames_steps(morph, _sample(keys, swell_keys, times), tolerance, threads), 0.9, 0.95
     )
-    straight = yield from _part(
+    straight = yield from parallel.part(
         check_frames_steps(morph, np.stack([times, times, 0 * times], axis=1), tolerance, threads), 0.95, 1.0
     )
     return Path(keys, swell_keys, PathReport(checked, straight, method, reason, morph.flips))
-
-
-def _part(steps: Generator[float, None, object], start: float, end: float) -> Generator[float, None, object]:
-    """Pass on the steps of one part of the work as shares of the whole."""
-    while True:
-        try:
-            fraction = next(steps)
-        except StopIteration as done:
-            return done.value
-        yield start + (end - start) * fraction
 
 
 def _sample(keys: Keys, swell_keys: Keys, times: np.ndarray) -> np.ndarray:
@@ -275,13 +238,7 @@ def _failing_edges(morph: Morph, points: np.ndarray, tolerance: float, samples: 
 def _connected(morph: Morph, uv: np.ndarray, tolerance: float) -> np.ndarray:
     """Whether the shape is connected at each of uv (F, 2), without swell."""
     linear, translation = family(morph, np.column_stack([uv, np.zeros(len(uv))]))
-    return np.array(
-        [
-            decide_column(linear[k], translation[k : k + 1], tolerance, False)[0][0] == Connectedness.CONNECTED
-            for k in range(len(uv))
-        ],
-        dtype=bool,
-    )
+    return np.array([is_connected(linear[k], translation[k], tolerance) for k in range(len(uv))], dtype=bool)
 
 
 def _simplified_steps(
@@ -357,18 +314,18 @@ def _swell_steps(
     """Keys of the least smooth swell that holds every frame together, zero at both ends."""
     times = np.arange(frames) / (frames - 1)
     uv = keys.at(times)
-    needed = yield from _part(least_swell_steps(morph, uv, tolerance, 0.0, threads), 0.0, 0.5)
+    needed = yield from parallel.part(least_swell_steps(morph, uv, tolerance, 0.0, threads), 0.0, 0.5)
     needed = _zero_at_ends(needed)
     for attempt in range(SWELL_ATTEMPTS):
         if not needed.any():
             return _no_swell()
         frame, swell = envelope(needed, max(2, (frames - 1) // SWELL_KEYS))
-        swell_keys = _smooth_keys(frame / (frames - 1), swell)
+        swell_keys = smooth_keys(frame / (frames - 1), swell)
         # More swell than the least can fail; there the next that works is asked for.
         above = np.clip(swell_keys.at(times), 0.0, 1.0)
         share = 0.5 + 0.5 * attempt / SWELL_ATTEMPTS
         steps = least_swell_steps(morph, uv, tolerance, above, threads)
-        raised = yield from _part(steps, share, share + 0.5 / SWELL_ATTEMPTS)
+        raised = yield from parallel.part(steps, share, share + 0.5 / SWELL_ATTEMPTS)
         raised = _zero_at_ends(raised)
         failing = raised > above + 1e-12
         failing[[0, -1]] = False
@@ -383,10 +340,3 @@ def _zero_at_ends(needed: np.ndarray) -> np.ndarray:
     needed = np.where(needed <= 1, needed, 0.0)
     needed[[0, -1]] = 0.0
     return needed
-
-
-def _smooth_keys(time: np.ndarray, value: np.ndarray) -> Keys:
-    slope = slopes(time, value)
-    before = np.diff(time, prepend=time[0])
-    after = np.diff(time, append=time[-1])
-    return Keys(time, value, value - slope * before / 3, value + slope * after / 3)

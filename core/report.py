@@ -9,8 +9,8 @@ import numpy as np
 
 from . import parallel
 from .connectedness import Connectedness
+from .decision import decide_column
 from .morph import Morph
-from .overlap import decide_column
 
 CHUNK = 16
 """Frames checked in one chunk of work."""

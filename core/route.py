@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .overlap import sift_down, sift_up
+from .heap import sift_down, sift_up
 
 STEPS = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)])
 """The eight neighbours of a node, (row, column); step k leads back along step 7 - k."""

@@ -8,8 +8,9 @@ import numpy as np
 
 from . import parallel
 from .connectedness import Connectedness
+from .curve import smooth_keys
+from .decision import decide_column, is_connected
 from .morph import Morph
-from .overlap import decide_column
 from .report import family
 
 LEVELS = 64
@@ -40,7 +41,7 @@ def _least(morph: Morph, uv: np.ndarray, start: float, tolerance: float) -> floa
     swells = np.append(start, np.arange(np.floor(start * LEVELS) + 1, LEVELS + 1) / LEVELS)
     linear, translation = family(morph, np.column_stack([np.full((len(swells), 2), uv), swells]))
     for k, swell in enumerate(swells):
-        if decide_column(linear[k], translation[k : k + 1], tolerance, False)[0][0] == Connectedness.CONNECTED:
+        if is_connected(linear[k], translation[k], tolerance):
             return float(swell)
     return NEVER
 
@@ -99,7 +100,7 @@ def envelope(needed: np.ndarray, spacing: int) -> tuple[np.ndarray, np.ndarray]:
     while True:
         frames = np.array(sorted(keys))
         swells = np.array([keys[k] for k in frames])
-        missing = needed - curve_at(frames, swells, every)
+        missing = needed - smooth_keys(frames, swells).at(every)
         worst = int(np.argmax(missing))
         if missing[worst] <= 1e-9:
             break
@@ -109,29 +110,3 @@ def envelope(needed: np.ndarray, spacing: int) -> tuple[np.ndarray, np.ndarray]:
     level = np.zeros(len(frames), dtype=bool)
     level[1:-1] = (swells[1:-1] == swells[:-2]) & (swells[1:-1] == swells[2:])
     return frames[~level], swells[~level]
-
-
-def slopes(times: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Slopes (K,) at keys of a curve that does not overshoot: harmonic means of both sides (Fritsch & Butland 1984)."""
-    secants = np.diff(values) / np.diff(times)
-    found = np.zeros(len(values))
-    before, after = secants[:-1], secants[1:]
-    rising = before * after > 0
-    found[1:-1][rising] = 2 * before[rising] * after[rising] / (before[rising] + after[rising])
-    return found
-
-
-def curve_at(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """The curve of `slopes` through keys (K,), at the times `at` (F,)."""
-    slope = slopes(times, values)
-    k = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
-    span = times[k + 1] - times[k]
-    x = (at - times[k]) / span
-    controls = (values[k], values[k] + slope[k] * span / 3, values[k + 1] - slope[k + 1] * span / 3, values[k + 1])
-    return bezier(*controls, x)
-
-
-def bezier(p0: np.ndarray, p1: np.ndarray, p2: np.ndarray, p3: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Cubic with control values p0 to p3, at x in [0, 1]; equal controls give themselves, and ends are exact."""
-    inside = p0 + x * (3 * (p1 - p0) + x * (3 * (p0 - 2 * p1 + p2) + x * (p3 - p0 + 3 * (p1 - p2))))
-    return np.where(x == 1, p3, inside)

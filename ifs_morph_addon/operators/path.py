@@ -5,6 +5,7 @@ from dataclasses import replace
 import bpy
 
 from ...core.ifs import IFSError
+from ...core.parallel import part
 from ...core.path import METHODS, plan_path_steps
 from ...core.report import check_frames, check_frames_steps
 from .. import fcurves
@@ -46,9 +47,9 @@ class _KeyPath(LongTask):
         locus = None
         low, high = settings.locus.domain
         if method == "planned" and low <= 0 and high >= 1:
-            locus = yield from _part(locus_steps(settings, gap=False), 0.0, LOCUS_SHARE)
+            locus = yield from part(locus_steps(settings, gap=False), 0.0, LOCUS_SHARE)
         steps = plan_path_steps(morph_of(settings), locus, frame_end - frame_start + 1, tolerance(settings), method)
-        path = yield from _part(steps, LOCUS_SHARE if locus else 0.0, 1.0)
+        path = yield from part(steps, LOCUS_SHARE if locus else 0.0, 1.0)
         fcurves.write_path(owner, path, frame_start, frame_end)
         # What counts is what Blender evaluates, with the F-curves' own precision.
         keyed = check_frames(
@@ -58,16 +59,6 @@ class _KeyPath(LongTask):
         settings.path.inputs = path_fingerprint(settings)
         fit_window(owner)
         self.report({"INFO"}, _headline(settings.path.report))
-
-
-def _part(steps, start, end):
-    """Steps whose shares fill a part of the whole."""
-    while True:
-        try:
-            share = next(steps)
-        except StopIteration as done:
-            return done.value
-        yield start + (end - start) * share
 
 
 def _headline(report: str) -> str:
@@ -162,14 +153,4 @@ class IFSMORPH_OT_clear_path(bpy.types.Operator):
 
 CLASSES = (IFSMORPH_OT_plan_path, IFSMORPH_OT_key_straight, IFSMORPH_OT_check_path, IFSMORPH_OT_clear_path)
 
-
-def register():
-    """Register the operators."""
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    """Unregister the operators."""
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

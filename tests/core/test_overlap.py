@@ -5,22 +5,21 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from core import overlap
+from core import decision, overlap
 from core.connectedness import connectedness
+from core.decision import decide_column
 from core.enclosure import outer_polygon
+from core.heap import sift_down, sift_up
 from core.ifs import IFS
 from core.overlap import (
     APART,
     MEET,
     UNKNOWN,
-    decide_column,
     normalize,
     pair_test,
     polygon_distance,
     set_child,
     set_piece,
-    sift_down,
-    sift_up,
     surely_one_piece,
 )
 from core.shapes import SHAPES
@@ -116,7 +115,7 @@ def test_a_pair_called_apart_is_apart_and_one_called_meeting_is_near(with_polygo
     linear, unit = unit_maps(random_ifs(seed))
     points, letters, spacing = dense(together(linear, unit), 1500)
     corners = outer_polygon(linear, unit, 1.0, 16, 1e-3)[1] if with_polygons else np.empty((0, 2))
-    first, second, key = np.empty((overlap.STACK, 7)), np.empty((overlap.STACK, 7)), np.empty(overlap.STACK)
+    first, second, key = np.empty((decision.STACK, 7)), np.empty((decision.STACK, 7)), np.empty(decision.STACK)
     tolerance = 0.01
     for i, j in ((0, 1), (0, 2), (1, 2)):
         outcome = pair_test(linear, unit, i, j, tolerance, corners, 4000, first, second, key)
@@ -131,7 +130,7 @@ def test_a_pair_called_apart_is_apart_and_one_called_meeting_is_near(with_polygo
 
 def test_a_pair_test_gives_up_at_its_budget():
     linear, unit = unit_maps(SHAPES["Lévy curve"])
-    first, second, key = np.empty((overlap.STACK, 7)), np.empty((overlap.STACK, 7)), np.empty(overlap.STACK)
+    first, second, key = np.empty((decision.STACK, 7)), np.empty((decision.STACK, 7)), np.empty(decision.STACK)
     assert pair_test(linear, unit, 0, 1, 1e-12, np.empty((0, 2)), 3, first, second, key) == UNKNOWN
     assert pair_test(linear, unit, 0, 1, 1e-12, np.empty((0, 2)), 4000, first[:4], second[:4], key[:4]) in (
         UNKNOWN,
@@ -186,7 +185,7 @@ def test_a_column_is_its_nodes_one_by_one(with_gap):
         assert np.array_equal(verdict.components, labels[k])
         if with_gap:
             assert verdict.gap == tuple(gap[k])
-        elif state[k] == overlap.DISCONNECTED:
+        elif state[k] == decision.DISCONNECTED:
             assert np.isnan(gap[k]).all()
 
 
@@ -194,7 +193,7 @@ def test_a_column_is_its_nodes_one_by_one(with_gap):
 @settings(max_examples=60)
 def test_the_gap_is_above_zero_exactly_where_disconnected(seed, tolerance):
     verdict = connectedness(random_ifs(seed, 4), tolerance)
-    assert (verdict.gap[0] > 0) == (verdict.state == overlap.DISCONNECTED)
+    assert (verdict.gap[0] > 0) == (verdict.state == decision.DISCONNECTED)
     assert verdict.gap[0] <= verdict.gap[1]
 
 
@@ -205,8 +204,8 @@ def test_components_are_named_by_their_lowest_map(seed):
     for i, label in enumerate(verdict.components):
         assert label == np.flatnonzero(verdict.components == label)[0]
         assert label <= i
-    assume(verdict.state != overlap.UNDECIDED)
-    assert (len(np.unique(verdict.components)) == 1) == (verdict.state == overlap.CONNECTED)
+    assume(verdict.state != decision.UNDECIDED)
+    assert (len(np.unique(verdict.components)) == 1) == (verdict.state == decision.CONNECTED)
 
 
 def test_the_reference_covers_the_attractor():

@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from core import parallel
-from core.parallel import Cancelled, finish, run, steps, thread_count
+from core.parallel import Cancelled, finish, part, run, steps, thread_count
 
 every_count = pytest.mark.parametrize("threads", [1, 2, 3, 7, None])
 
@@ -130,3 +130,14 @@ def test_thread_count(monkeypatch):
     monkeypatch.delattr(parallel.os, "sched_getaffinity", raising=False)
     monkeypatch.setattr(parallel.os, "cpu_count", lambda: None)
     assert thread_count() == 1
+
+
+def test_a_part_of_the_work_is_a_part_of_the_whole():
+    def work():
+        yield 0.5
+        yield 1.0
+        return "done"
+
+    shares = []
+    assert finish(part(work(), 0.2, 0.6), shares.append) == "done"
+    assert shares == pytest.approx([0.4, 0.6])

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import BPoly
 
 from core.connectedness import Connectedness, connectedness
+from core.curve import bezier, slopes, smooth_keys
 from core.ifs import IFS
 from core.morph import Morph
 from core.parallel import finish
@@ -14,12 +15,9 @@ from core.shapes import SHAPES
 from core.swelling import (
     LEVELS,
     NEVER,
-    bezier,
-    curve_at,
     envelope,
     least_swell_field_steps,
     least_swell_steps,
-    slopes,
 )
 
 CONNECTED, DISCONNECTED, UNDECIDED, NO_ATTRACTOR = Connectedness
@@ -103,7 +101,7 @@ def test_the_field_is_the_least_level_of_each_node(morph):
 
 def envelope_curve(needed, spacing):
     frame, swell = envelope(needed, spacing)
-    return frame, swell, curve_at(frame, swell, np.arange(len(needed)))
+    return frame, swell, smooth_keys(frame, swell).at(np.arange(len(needed)))
 
 
 @given(needs, st.integers(2, 12))
@@ -114,7 +112,7 @@ def test_the_envelope_is_never_below_what_is_needed(needed, spacing):
     frame, swell, curve = envelope_curve(needed, spacing)
     assert (curve >= needed - 1e-9).all()
     # No overshoot, so what is needed most is the most there is.
-    fine = curve_at(frame, swell, np.linspace(0, len(needed) - 1, 20 * len(needed)))
+    fine = smooth_keys(frame, swell).at(np.linspace(0, len(needed) - 1, 20 * len(needed)))
     assert fine.max() <= needed.max() + 1e-12
     assert fine.min() >= -1e-12
 
@@ -164,12 +162,12 @@ def test_the_curve_does_not_overshoot_and_is_smooth(values, seed):
     values = np.array(values)
     times = np.cumsum(np.random.default_rng(seed).uniform(0.1, 3, len(values)))
     for k in range(len(values) - 1):
-        piece = curve_at(times, values, np.linspace(times[k], times[k + 1], 50, endpoint=False))
+        piece = smooth_keys(times, values).at(np.linspace(times[k], times[k + 1], 50, endpoint=False))
         low, high = sorted(values[k : k + 2])
         assert (piece >= low - 1e-9).all()
         assert (piece <= high + 1e-9).all()
         assert (np.diff(piece) >= -1e-9).all() or (np.diff(piece) <= 1e-9).all()
-    assert curve_at(times, values, times) == pytest.approx(values, abs=1e-12)
+    assert smooth_keys(times, values).at(times) == pytest.approx(values, abs=1e-12)
 
 
 @given(st.lists(st.floats(-2, 2), min_size=3, max_size=9))
