@@ -15,11 +15,11 @@ STEP_SECONDS = 0.04
 
 
 class LongTask:
-    """Mixin for operators. Subclasses have `work(context)`, a generator, and call its result with `self.report`."""
+    """Mixin for operators.
 
-    def work(self, context):
-        """Yield the share done in [0, 1]; change the file only after the last yield."""
-        raise NotImplementedError
+    Subclasses have ``work(context)``, a generator that yields the share done in [0, 1], changes the file only after its
+    last yield, and says what came of it by `self.report`.
+    """
 
     def execute(self, context):
         """Work to the end, as scripts and background runs want it."""

@@ -107,11 +107,4 @@ def _light(context):
     context.collection.objects.link(sun)
 
 
-def register():
-    """Register the operator."""
-    bpy.utils.register_class(IFSMORPH_OT_add)
-
-
-def unregister():
-    """Unregister the operator."""
-    bpy.utils.unregister_class(IFSMORPH_OT_add)
+register, unregister = bpy.utils.register_classes_factory((IFSMORPH_OT_add,))

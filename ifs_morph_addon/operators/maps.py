@@ -108,14 +108,4 @@ class IFSMORPH_OT_map_move(_MapOperator, bpy.types.Operator):
 
 CLASSES = (IFSMORPH_OT_map_add, IFSMORPH_OT_map_remove, IFSMORPH_OT_map_duplicate, IFSMORPH_OT_map_move)
 
-
-def register():
-    """Register the operators."""
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    """Unregister the operators."""
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -30,14 +30,4 @@ class IFSMORPH_OT_repair_output(bpy.types.Operator):
 
 CLASSES = (IFSMORPH_OT_repair_output,)
 
-
-def register():
-    """Register the operators."""
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    """Unregister the operators."""
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

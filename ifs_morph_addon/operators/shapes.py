@@ -36,11 +36,4 @@ class IFSMORPH_OT_load_shape(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def register():
-    """Register the operator."""
-    bpy.utils.register_class(IFSMORPH_OT_load_shape)
-
-
-def unregister():
-    """Unregister the operator."""
-    bpy.utils.unregister_class(IFSMORPH_OT_load_shape)
+register, unregister = bpy.utils.register_classes_factory((IFSMORPH_OT_load_shape,))

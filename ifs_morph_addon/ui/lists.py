@@ -15,11 +15,4 @@ class IFSMORPH_UL_maps(bpy.types.UIList):
         row.prop(item, "name", text="", emboss=False)
 
 
-def register():
-    """Register the list."""
-    bpy.utils.register_class(IFSMORPH_UL_maps)
-
-
-def unregister():
-    """Unregister the list."""
-    bpy.utils.unregister_class(IFSMORPH_UL_maps)
+register, unregister = bpy.utils.register_classes_factory((IFSMORPH_UL_maps,))

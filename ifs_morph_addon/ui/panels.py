@@ -188,10 +188,11 @@ class IFSMORPH_PT_path(_Panel, bpy.types.Panel):
         row.operator("ifs_morph.clear_path", icon="X")
         if not path.report:
             return
-        if path.inputs != path_fingerprint(settings) or not fcurves.has_path(owner):
+        current = path.inputs == path_fingerprint(settings)
+        if not current or not fcurves.has_path(owner):
             _sentence(layout, context, "The report is out of date: the morph has changed since.", icon="INFO")
         box = layout.box()
-        box.active = path.inputs == path_fingerprint(settings)
+        box.active = current
         for line in path.report.splitlines():
             _sentence(box, context, line)
 
@@ -292,14 +293,4 @@ CLASSES = (
     IFSMORPH_PT_window,
 )
 
-
-def register():
-    """Register the panels."""
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister():
-    """Unregister the panels."""
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)
