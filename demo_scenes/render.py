@@ -4,9 +4,12 @@ python -m demo_scenes.render --scene turned_gasket_to_gasket --frames 120 --size
 """
 
 import argparse
+import os
 import shutil
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 
@@ -101,25 +104,18 @@ def _render(scene, folder: Path) -> list[Path]:
     return sorted(folder.glob("*.png"))
 
 
-class _quiet:  # noqa: N801 -- reads as a verb where it is used
+@contextmanager
+def _quiet(log: Path) -> Iterator[None]:
     """Send what Blender prints to a file: its C code writes to the descriptor, behind Python's back."""
-
-    def __init__(self, log: Path) -> None:
-        self._log = log
-
-    def __enter__(self) -> None:
-        import os
-
-        sys.stdout.flush()
-        self._kept = os.dup(1)
-        with self._log.open("wb") as log:
-            os.dup2(log.fileno(), 1)
-
-    def __exit__(self, *_) -> None:
-        import os
-
-        os.dup2(self._kept, 1)
-        os.close(self._kept)
+    sys.stdout.flush()
+    kept = os.dup(1)
+    with log.open("wb") as file:
+        os.dup2(file.fileno(), 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
 
 
 def _collect(pictures: list[Path], path, output: Path) -> None:
