@@ -44,10 +44,8 @@ lint: $(OWN_UV) ## check the code's style
 	@$(PYTHON) -m ruff check
 	@$(PYTHON) -m ruff format --check
 
-bench: $(READY) ## measure speed, into out/benchmarks.json
-	@mkdir -p out
-	@$(PYTHON) -m pytest tests/benchmarks/bench_*.py --benchmark-json=out/benchmarks.json \
-	    --benchmark-columns=min,median,max --benchmark-sort=name --benchmark-time-unit=ms
+bench: $(READY) ## measure speed and memory, as a table and into out/benchmarks.json
+	@$(PYTHON) -m pytest tests/benchmarks/bench_*.py
 
 package: $(READY) ## build the extension's zips, one for each platform
 	@$(PYTHON) -m release

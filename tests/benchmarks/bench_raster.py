@@ -3,25 +3,27 @@
 import math
 import shutil
 import subprocess
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
 from numba import njit
 
+from core.affine import compose
 from core.drawing import deposit, mark
 from core.ifs import IFS
 from core.pieces import measures, outlines
-from core.raster import fit_window, render
+from core.raster import MODES, fit_window, render
 from core.shapes import SHAPES
 from core.words import EVERYWHERE, cumulated, cut_words, unit_maps
+from tests.benchmarks.measuring import MEMORY_IS_TOLD, fastest, peak_memory
 
 HD = (1920, 1080)
 COVERAGE = 0.995
 FINENESS = 0.5
 """Pieces of the exact subdivision have this diameter, in pixels, at most."""
+
+SIDES = (256, 512, 1024, 2048, 4096)
 
 MOST_PIECES = 100_000_000
 MOST_POINTS = 128_000_000
@@ -117,23 +119,16 @@ def covered(picture, reference):
     return np.count_nonzero((picture > 0) & (reference > 0)) / np.count_nonzero(reference)
 
 
-def fastest(function, rounds=5):
-    """Return the least time of some calls, in seconds."""
-    function()
-    times = []
-    for _ in range(rounds):
-        started = time.perf_counter()
-        function()
-        times.append(time.perf_counter() - started)
-    return min(times)
+LEAST_TIMES = {"gasket": 5.0, "terdragon": 5.0}
+"""How many times as fast as the chaos game to be, where that is more than one."""
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_against_chaos(benchmark, figure, name):
+def test_against_chaos(figure, name):
     """The set at 1920 x 1080, as 32 bit floats, against the chaos game that covers as much of it."""
     view = View(SHAPES[name], HD)
     reference = view.exact()
-    picture = benchmark.pedantic(render, (view.ifs, HD, view.window), {"threads": 1}, rounds=5, warmup_rounds=1)
+    picture = render(view.ifs, HD, view.window, threads=1)
     if reference is None:
         reference = picture  # What we find ourselves: nothing else is exact where so many pieces overlap.
     count = view.points_to_cover(reference)
@@ -144,13 +139,12 @@ def test_against_chaos(benchmark, figure, name):
         return canvas.astype(np.float32)
 
     ours = fastest(lambda: render(view.ifs, HD, view.window, threads=1))
-    figure("times as fast", fastest(chaos, 2) / ours)
-    figure("points, millions", count / 1e6)
-    figure("covered", 100 * covered(picture, reference), " %")
+    figure("times as fast", fastest(chaos, 2) / ours, at_least=LEAST_TIMES.get(name, 1.0))
+    figure("covered", 100 * covered(picture, reference), " %", at_least=100 * COVERAGE)
 
 
 @pytest.mark.skipif(shutil.which("flam3-render") is None, reason="flam3-render is not installed")
-def test_against_flam3(benchmark, figure, tmp_path):
+def test_against_flam3(figure, tmp_path):
     """Points a second of a gasket at 1024 x 1024, one thread each: what a higher quality adds in points and time."""
     palette = "\n".join("".join(f"{k:02X}{255 - k:02X}80" for k in range(row, row + 8)) for row in range(0, 256, 8))
 
@@ -166,11 +160,9 @@ def test_against_flam3(benchmark, figure, tmp_path):
     low, high = 5, 105
     theirs = (high - low) * 1024**2 / (min(seconds(high) for _ in range(2)) - min(seconds(low) for _ in range(2)))
     view = View(SHAPES["gasket"], (1024, 1024))
-    ours = benchmark.pedantic(lambda: (points_a_second(view, "set"), points_a_second(view, "density")), rounds=1)
     figure("flam3, millions a second", theirs / 1e6)
-    for mode, rate in zip(("set", "density"), ours, strict=True):
-        figure(mode, rate / 1e6)
-        figure("times as many", rate / theirs)
+    for mode in ("set", "density"):
+        figure(f"{mode}, times as many", points_a_second(view, mode) / theirs, at_least=15)
 
 
 def points_a_second(view, mode):
@@ -188,48 +180,36 @@ def points_a_second(view, mode):
     return np.diff(sets.start)[sets.nearest(words)].sum() / seconds
 
 
-@pytest.mark.parametrize("mode", ["set", "density"])
-def test_growth_with_pixels(benchmark, figure, mode):
+@pytest.mark.parametrize("mode", MODES)
+def test_growth_with_pixels(figure, mode):
     """Time a pixel at 4096 x 4096 over that at 256 x 256: at most 1 where cost grows linearly or less."""
     ifs = SHAPES["terdragon"]
+    times = {side: fastest(lambda side=side: render(ifs, (side, side), mode=mode, threads=1), 3) for side in SIDES}
+    for side in SIDES[1:]:
+        figure(f"a pixel, {side}² over 256²", times[side] / times[256] * (256 / side) ** 2, at_most=1)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_growth_with_maps(figure, mode):
+    """Time at 1024 x 1024 of one attractor as of N maps, the words of the twindragon, over N log N; to that of two."""
+    maps = letters = SHAPES["twindragon"].maps
     times = {}
-    for side in (256, 512, 1024, 2048, 4096):
-        size = (side, side)
-        times[side] = fastest(lambda size=size: render(ifs, size, mode=mode, threads=1), 3)
-        figure(f"{side} x {side}", times[side] * 1e3, " ms")
-    benchmark.pedantic(render, (ifs, (1024, 1024)), {"mode": mode, "threads": 1}, rounds=3, warmup_rounds=1)
-    figure("a pixel, 4096 over 256", times[4096] / times[256] / 256)
+    for count in (2, 4, 8, 16, 32, 64):
+        ifs = IFS(maps)
+        times[count] = fastest(lambda ifs=ifs: render(ifs, (1024, 1024), mode=mode, threads=1), 3)
+        if count > 2:
+            growth = count * math.log(count) / (2 * math.log(2))
+            figure(f"{count} maps over 2, over N log N", times[count] / times[2] / growth, at_most=1)
+        maps = compose(maps[:, None], letters).reshape(-1, 2, 3)
 
 
-@pytest.mark.parametrize("mode", ["set", "density"])
-def test_growth_with_maps(benchmark, figure, mode):
-    """Time at 1024 x 1024 of a square of N = k x k maps, 4 to 64, and of the same for N log N."""
-    times = {}
-    for k in (2, 3, 4, 6, 8):
-        ifs = IFS([[[1 / k, 0, x / k], [0, 1 / k, y / k]] for x in range(k) for y in range(k)])
-        times[k * k] = fastest(lambda ifs=ifs: render(ifs, (1024, 1024), mode=mode, threads=1), 3)
-        figure(f"{k * k} maps", times[k * k] * 1e3, " ms")
-    benchmark.pedantic(render, (ifs, (1024, 1024)), {"mode": mode, "threads": 1}, rounds=3, warmup_rounds=1)
-    figure("64 maps over 4", times[64] / times[4])
-
-
-@pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="only Linux tells")
-def test_memory(benchmark, figure):
+@pytest.mark.skipif(not MEMORY_IS_TOLD, reason="the system does not tell")
+def test_memory(figure):
     """What rendering a set at 4096 x 4096 takes at its peak, over the size of the picture that it returns."""
-    script = """
-from pathlib import Path
+    setup = """
 from core.raster import render
 from core.shapes import SHAPES
-
-def kilobytes(field):
-    return int(next(line for line in Path("/proc/self/status").read_text().splitlines() if field in line).split()[1])
-
 render(SHAPES["terdragon"], (64, 64))
-Path("/proc/self/clear_refs").write_text("5")  # Peak from here on.
-before = kilobytes("VmRSS")
-picture = render(SHAPES["terdragon"], (4096, 4096))
-print((kilobytes("VmHWM") - before) * 1024 / picture.nbytes)
 """
-    run = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
-    benchmark.pedantic(render, (SHAPES["terdragon"], (4096, 4096)), rounds=2)
-    figure("times the picture", float(run.stdout))
+    peak = peak_memory(setup, 'render(SHAPES["terdragon"], (4096, 4096))')
+    figure("times the picture", peak / (4 * 4096**2), at_most=4)
