@@ -10,9 +10,9 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 
 from . import parallel
+from .kernels import njit
 from .words import cumulated, fixed_point
 
 RUN = 2**16

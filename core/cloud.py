@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 
 from . import parallel
 from .enclosure import norm
 from .ifs import IFS
+from .kernels import njit
 from .words import IDENTITY, LETTER, cumulated, fixed_point, grown, unit_maps
 
 FEW = 256

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numba import njit
 
 from . import decision
 from .affine import compose
 from .ifs import IFS, Contractivity
+from .kernels import njit
 
 
 class Connectedness(IntEnum):

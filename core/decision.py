@@ -7,11 +7,11 @@ the others are (`gap`).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from . import enclosure
 from .enclosure import enclosing_disc, outer_polygon, shrinking_words
 from .gap import measure_gap
+from .kernels import njit
 from .overlap import MEET, SLACK, UNKNOWN, distance, join, normalize, pair_test, set_piece, surely_one_piece
 
 CONNECTED, DISCONNECTED, UNDECIDED, NO_ATTRACTOR = 0, 1, 2, 3

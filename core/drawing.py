@@ -10,9 +10,9 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 
 from . import parallel
+from .kernels import njit
 from .pieces import PointSets
 from .words import MASS
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from .kernels import njit
 
 COVERED, NO_ATTRACTOR, UNDECIDED = 0, 1, 2
 """Outcomes of `cover`."""

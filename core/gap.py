@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from .enclosure import DIRECTIONS, outer_polygon
 from .heap import sift_down, sift_up
+from .kernels import njit
 from .overlap import SLACK, distance, join, polygon_distance, set_child, set_piece
 
 PRECISION = 0.05

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from .enclosure import norm
+from .kernels import njit
 
 MEET, APART, UNKNOWN = 0, 1, 2
 """Outcomes of a pair test."""

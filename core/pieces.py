@@ -16,8 +16,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from .kernels import njit
 from .words import MASS, SIZE, WORD_MASS, cumulated, cut_words, fixed_point, grown
 
 SIZES_PER_OCTAVE = 2

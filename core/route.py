@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from .heap import sift_down, sift_up
+from .kernels import njit
 
 STEPS = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)])
 """The eight neighbours of a node, (row, column); step k leads back along step 7 - k."""

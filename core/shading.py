@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 
 from . import parallel
+from .kernels import njit
 from .raster import TOTAL_MASS
 
 CURVES = ("log", "gamma", "linear")

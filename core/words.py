@@ -12,10 +12,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from .enclosure import norm
 from .ifs import IFS
+from .kernels import njit
 
 SIZE, MASS, LETTER = 6, 7, 8
 """Columns of a table of words, after the six of the map."""

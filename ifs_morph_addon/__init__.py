@@ -4,6 +4,7 @@ Nothing that needs numba is imported before it is known to be there, so that Ble
 """
 
 from importlib import import_module
+from importlib.util import find_spec
 
 MODULES = (
     "properties",
@@ -28,8 +29,6 @@ def unregister():
 
 
 def _modules():
-    try:
-        import numba  # noqa: F401 -- only to see whether it can be
-    except ImportError:
+    if find_spec("numba") is None:
         return [import_module(".without_numba", __package__)]
     return [import_module(f".{name}", __package__) for name in MODULES]
