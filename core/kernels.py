@@ -47,6 +47,11 @@ class Kernel:
             return self._dispatcher
 
     @property
+    def is_compiled(self) -> bool:
+        """Whether the function was compiled, or found compiled, for any arguments."""
+        return self._dispatcher is not None and len(self._dispatcher.overloads) > 0
+
+    @property
     def _numba_type_(self):
         """What numba asks for where one kernel calls another."""
         return self.dispatcher._numba_type_

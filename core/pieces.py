@@ -166,7 +166,7 @@ def fill_sets(maps, norms, borders, cell, smallest, count, ratio, seed, measure)
     everywhere = np.array([-np.inf, -np.inf, np.inf, np.inf])
     start = np.zeros(count + 1, np.int64)
     start[1] = seed.shape[0]
-    points = grown(seed, 4096)
+    points = grown(seed, max(seed.shape[0], 4096))
     for k in range(1, count):
         size = smallest * 2 ** (k / SIZES_PER_OCTAVE)
         limit = max(2 / ratio, 2 * smallest / size)

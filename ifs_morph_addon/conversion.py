@@ -13,7 +13,7 @@ from ..core.ifs import IFS, IFSError
 from ..core.morph import SCHEMES, Morph
 from ..core.raster import fit_window as fitted_window
 from ..core.shading import attractorlet_colors
-from . import fcurves
+from . import fcurves, preparation
 
 FIT_SAMPLES = 33
 """Places along the path whose attractors the window must hold."""
@@ -177,7 +177,7 @@ def fit_window(owner) -> None:
     """Fit the window of an object to all shapes of its morph, if it is to be fitted and there are any."""
     settings = owner.ifs_morph
     output = settings.output
-    if settings.kind == "NONE" or not output.fit_window:
+    if settings.kind == "NONE" or not output.fit_window or preparation.is_running():
         return
     try:
         morph = morph_of(settings)
@@ -189,6 +189,8 @@ def fit_window(owner) -> None:
 
 def shape_problem(settings) -> str:
     """What keeps an object's shapes from being morphed, in one sentence; empty if nothing does."""
+    if preparation.is_running():
+        return preparation.message()
     try:
         morph = morph_of(settings)
         morph.initial.require_attractor()

@@ -1,4 +1,4 @@
-"""What Blender calls when it has evaluated a frame or an edit, loaded a file, or undone something.
+"""What is done when Blender has evaluated a frame or an edit, loaded a file, or undone something.
 
 Handlers only touch what `outputs` shows. They run for viewports and for renders, in whatever thread that is.
 """
@@ -6,7 +6,8 @@ Handlers only touch what `outputs` shows. They run for viewports and for renders
 import bpy
 from bpy.app.handlers import persistent
 
-from . import outputs
+from . import outputs, preparation
+from .conversion import fit_window
 
 RELEVANT = ("OBJECT", "TEXTURE")
 """Kinds of datablocks whose edit may change a picture; a color ramp lives in a texture."""
@@ -33,6 +34,15 @@ def on_other_data(*_):
     outputs.refresh(bpy.context.evaluated_depsgraph_get())
 
 
+def on_prepared():
+    """Show what had to wait for kernels."""
+    outputs.forget()
+    for owner in bpy.data.objects:
+        if outputs.is_editable(owner):
+            fit_window(owner)
+        owner.update_tag()
+
+
 HANDLERS = {
     "frame_change_post": on_frame,
     "depsgraph_update_post": on_edit,
@@ -43,13 +53,15 @@ HANDLERS = {
 
 
 def register():
-    """Attach the handlers."""
+    """Attach the handlers, and have the kernels prepared that they need."""
     for event, handler in HANDLERS.items():
         getattr(bpy.app.handlers, event).append(handler)
+    preparation.begin(on_prepared)
 
 
 def unregister():
     """Take them off, and forget what is shown."""
+    preparation.end()
     for event, handler in HANDLERS.items():
         getattr(bpy.app.handlers, event).remove(handler)
     outputs.forget()

@@ -39,6 +39,7 @@ CORE = (
     "raster",
     "shading",
     "formats",
+    "warm_up",
 )
 
 

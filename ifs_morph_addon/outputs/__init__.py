@@ -9,6 +9,7 @@ import threading
 import bpy
 
 from ...core.ifs import IFSError
+from .. import preparation
 from ..conversion import morph_of
 from . import image, materials, points
 
@@ -24,6 +25,8 @@ _messages: dict[int, str] = {}
 
 def refresh(depsgraph) -> None:
     """Bring the outputs of all morph objects that a dependency graph evaluated up to date."""
+    if preparation.is_running() and depsgraph.mode != "RENDER":
+        return
     may_create = not bpy.app.is_job_running("RENDER")
     claimed: set[int] = set()
     with _lock:

@@ -4,7 +4,7 @@ import textwrap
 
 import bpy
 
-from .. import fcurves, outputs
+from .. import fcurves, outputs, preparation
 from ..conversion import locus_fingerprint, path_fingerprint, shape_problem
 
 CHARACTER_WIDTH = 6.2
@@ -35,6 +35,9 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
     def draw(self, context):
         """Draw the place in the morph, and what is wrong with it."""
         layout = self.layout
+        if preparation.is_running():
+            _sentence(layout, context, preparation.message(), icon="TIME")
+            layout.progress(factor=preparation.share(), text=f"{100 * preparation.share():.0f} %")
         owner = context.object
         if owner is None or owner.ifs_morph.kind == "NONE":
             column = layout.column()
@@ -48,7 +51,7 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
         column.prop(settings, "uv", index=1, text="V")
         column.prop(settings, "swell")
         problem = shape_problem(settings) or outputs.message(owner)
-        if problem:
+        if problem and not preparation.is_running():
             _sentence(layout, context, problem, icon="ERROR")
         if owner.library is not None:
             _sentence(

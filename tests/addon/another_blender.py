@@ -1,6 +1,5 @@
 """Runs scripts in a Blender of its own that has the extension of this session and the same user folder."""
 
-import os
 import subprocess
 import sys
 
@@ -14,11 +13,8 @@ END = f"\naddon_utils.disable('{PACKAGE}')\n"
 
 def run(script, *arguments, start=START, end=END):
     """Run a script with the extension enabled, its arguments in `sys.argv`; what it printed."""
-    import numba
-
     process = subprocess.run(
         [sys.executable, "-c", start + script + end, *map(str, arguments)],
-        env={**os.environ, "NUMBA_CACHE_DIR": str(numba.config.CACHE_DIR)},
         capture_output=True,
         text=True,
         check=False,

@@ -1,12 +1,11 @@
 """Gives the tests the extension as a user has it: built into a zip, installed by Blender from the zip, enabled.
 
 The ``bpy`` module reads its user folder once, when it is first imported, so this file chooses the folder before
-any test module imports ``bpy``. Sessions that run at the same time have a folder each; a session alone has the same
-one as the last time, because numba finds compiled kernels by the path of their source.
+any test module imports ``bpy``. Sessions that run at the same time have a folder each. Compiled kernels are kept from
+session to session.
 """
 
 import fcntl
-import hashlib
 import importlib
 import os
 import shutil
@@ -42,17 +41,7 @@ def _empty_user_folder() -> Path:
 
 
 os.environ["BLENDER_USER_RESOURCES"] = str(_empty_user_folder())
-
-
-def _keep_compiled_kernels() -> None:
-    """Let numba keep kernels between sessions, apart for each state of the core.
-
-    numba compiles a kernel again when its own file changed, but not when a kernel that it calls did.
-    """
-    import numba
-
-    state = hashlib.sha256(b"".join(path.read_bytes() for path in sorted((ROOT / "core").rglob("*.py"))))
-    numba.config.CACHE_DIR = str(OUTPUT / "kernels" / state.hexdigest()[:16])
+os.environ.setdefault("NUMBA_CACHE_DIR", str(OUTPUT / "kernels"))
 
 
 @pytest.fixture(scope="session")
@@ -63,7 +52,6 @@ def extension(tmp_path_factory):
 
     from release.zips import build
 
-    _keep_compiled_kernels()
     package = build(platform=None, output=tmp_path_factory.mktemp("packages"))
     bpy.ops.extensions.package_install_files(
         filepath=str(package), repo="user_default", enable_on_install=True, overwrite=True

@@ -33,6 +33,10 @@ class Layout:
     def label(self, text="", **_):
         self.texts.append(text)
 
+    def progress(self, factor, text):
+        assert 0 <= factor <= 1
+        self.texts.append(text)
+
     def prop(self, data, name, text=None, **_):
         assert name in data.bl_rna.properties, f"{data} has no property {name}"
 

@@ -1,0 +1,113 @@
+"""Calls every kernel once with each kind of arguments that it gets, so that none is left to compile when it is needed.
+
+A program that must not keep a person waiting runs `main` in a process of its own and looks now and then how far it is.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+from hashlib import sha256
+from importlib.metadata import distributions
+from pathlib import Path
+
+import numpy as np
+
+from . import kernels
+from .cloud import point_cloud
+from .connectedness import connectedness
+from .ifs import IFS
+from .kernels import Kernel
+from .locus import compute_locus
+from .morph import Morph
+from .path import plan_path
+from .raster import fit_window, render
+from .report import check_frames
+from .shading import attractorlet_colors, shade
+from .shapes import SHAPES
+
+SIZE = (64, 48)
+"""Of pictures, in pixels: kernels do not care."""
+
+RESOLUTION = 10
+"""Of loci, in nodes a side."""
+
+NICENESS = 10
+"""How far the process stands back behind others, where the system knows of that."""
+
+COVERED_TWICE = IFS(np.array([[[0.97, 0.0, x], [0.0, 0.97, y]] for x, y in ((0, 0), (0.03, 0), (0, 0.03))]))
+"""Its attractor lies over itself so often that it is drawn by the chaos game."""
+
+
+def run() -> None:
+    """Compile all kernels that were not kept."""
+    for calls in (_shapes, _pictures, _points, _paths):
+        calls()
+
+
+def _shapes() -> None:
+    shape = SHAPES["gasket"]
+    shape.require_attractor()
+    fit_window(shape, SIZE)
+
+
+def _pictures() -> None:
+    shape = SHAPES["gasket"]
+    white, ramp, labels = np.ones(4, np.float32), np.ones((16, 4), np.float32), attractorlet_colors(shape.count)
+    for mode, colors in (("set", white), ("density", ramp), ("attractorlet", labels)):
+        render(COVERED_TWICE, SIZE, None, mode, threads=1)
+        for norms in (None, shape.norms):
+            picture = render(shape, SIZE, None, mode, norms=norms, threads=1)
+        for antialiasing in (1, 2):
+            shade(picture, mode, colors, antialiasing=antialiasing, threads=1)
+
+
+def _points() -> None:
+    point_cloud(SHAPES["gasket"], 1000, threads=1)
+
+
+def _paths() -> None:
+    connectedness(SHAPES["gasket"])
+    whole, broken = (Morph(SHAPES[name], SHAPES["gasket"]) for name in ("turned gasket", "terdragon"))
+    compute_locus(whole, RESOLUTION, threads=1)
+    check_frames(whole, np.zeros((2, 3)), threads=1)
+    for morph in (whole, broken):
+        plan_path(morph, compute_locus(morph, RESOLUTION, threads=1, gap=False), 8, threads=1)
+
+
+def share_done(folder: Path, since: float) -> float:
+    """Share of the kernels, from 0 to 1, that were put into a folder since a time in seconds since 1970."""
+    modules = [module for name, module in list(sys.modules.items()) if name.startswith(f"{__package__}.")]
+    known = {id(value) for module in modules for value in vars(module).values() if isinstance(value, Kernel)}
+    kept = [path for path in folder.glob("*.nbi") if path.stat().st_mtime >= since]
+    return min(len(kept) / len(known), 1.0)
+
+
+def is_done(folder: Path) -> bool:
+    """Whether all kernels of these sources were compiled into a folder, on this machine and with this numba."""
+    try:
+        return _mark(folder).read_text() == _state()
+    except OSError:
+        return False
+
+
+def _mark(folder: Path) -> Path:
+    """The file that says what the kernels in a folder were compiled from; a home may be shared by several machines."""
+    machine = sha256(f"{platform.node()} {platform.machine()} {sys.version_info[:2]}".encode()).hexdigest()[:6]
+    return folder / f"ready-{machine}"
+
+
+def _state() -> str:
+    numba = next((distribution.version for distribution in distributions(name="numba")), "")
+    return f"{__package__} {kernels.fingerprint('warm_up')} numba {numba}"
+
+
+def main() -> None:
+    """Compile all kernels into the folder where they are kept, behind all other work, and leave a mark at the end."""
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+    run()
+    folder = kernels.folder()
+    if folder is not None:
+        _mark(folder).write_text(_state())

@@ -1,0 +1,171 @@
+"""Has a process of its own compile the kernels when Blender's window opens with them the first time on a computer.
+
+That takes about half a minute, during which a window would freeze. What was compiled is kept in the user's folder of
+the extension. Until the process is over, whatever needs kernels waits and says so, but renders; they must not be wrong,
+and Blender compiles for them as it goes. It does the same without a window, and where no process can do the work.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+
+from .. import __package__ as base_package
+from ..core import kernels, warm_up
+
+LONGEST = 600.0
+"""Seconds after which the process is given up."""
+
+INTERVAL = 0.25
+"""Seconds between two looks at it."""
+
+USUAL = 30.0
+ENOUGH_TO_TELL = 0.1
+"""What the process takes in seconds, about, and the share from which on its own pace tells better."""
+
+# The extension's own package needs Blender, so empty ones of the same names stand in for it and its parents.
+SCRIPT = """
+import importlib, sys, types
+package, folder, *sys.path = sys.argv[1:]
+parts = package.split(".")
+for end in range(1, len(parts) + 1):
+    module = types.ModuleType(".".join(parts[:end]))
+    module.__path__ = [folder]
+    sys.modules[module.__name__] = module
+importlib.import_module(package + ".core.warm_up").main()
+"""
+
+_running: list["_Preparation"] = []
+"""The preparation that runs, if any."""
+
+
+class _Preparation:
+    def __init__(self, folder: Path, when_over: Callable[[], None]):
+        self.folder, self.when_over = folder, when_over
+        self.since, self.share = time.time(), 0.0
+        self.output = tempfile.TemporaryFile()  # noqa: SIM115 -- closed in `close`
+        self.process = subprocess.Popen(
+            _command(),
+            env={**os.environ, "NUMBA_CACHE_DIR": str(folder)},
+            stdin=subprocess.DEVNULL,
+            stdout=self.output,
+            stderr=subprocess.STDOUT,
+            creationflags=_creation_flags(),
+        )
+
+    @property
+    def elapsed(self) -> float:
+        return time.time() - self.since
+
+    def close(self) -> str:
+        """End the process if it still runs; what it said."""
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        with self.output as output:
+            output.seek(0)
+            return output.read().decode(errors="replace")
+
+
+def _command() -> list[str]:
+    python = sys.executable or ""
+    if not Path(python).name.lower().startswith("python"):
+        raise OSError(f"“{python}” is no Python")
+    options = ["-I", "-B"] if sys.dont_write_bytecode else ["-I"]
+    extension = str(Path(warm_up.__file__).parents[1])
+    return [python, *options, "-c", SCRIPT, base_package, extension, *filter(None, sys.path)]
+
+
+def _creation_flags() -> int:
+    """Keep Windows from opening a console and from putting the process before Blender."""
+    if sys.platform != "win32":
+        return 0
+    return subprocess.CREATE_NO_WINDOW | subprocess.BELOW_NORMAL_PRIORITY_CLASS
+
+
+def begin(when_over: Callable[[], None]) -> None:
+    """Say where kernels are kept, and prepare them if they are missing and there is a window to wait for them.
+
+    `when_over` is called once whatever had to wait can go on.
+    """
+    kernels.keep_in(_user_folder())
+    folder = kernels.folder()
+    if not (bpy.app.background or folder is None or warm_up.is_done(folder)):
+        start(folder, when_over)
+
+
+def _user_folder() -> Path:
+    try:
+        folder = Path(bpy.utils.extension_path_user(base_package, path="kernels"))
+    except ValueError:
+        return Path(bpy.app.tempdir, "kernels")  # Run from somewhere else than an extensions repository.
+    return folder if kernels.is_writable(folder) else Path(bpy.app.tempdir, "kernels")
+
+
+def start(folder: Path, when_over: Callable[[], None]) -> None:
+    """Start the process, and look after it from a timer."""
+    try:
+        _running.append(_Preparation(folder, when_over))
+    except OSError as error:
+        print(f"IFS Morph: could not prepare ahead, so its first use will take half a minute: {error}")
+        return
+    bpy.app.timers.register(look, first_interval=INTERVAL, persistent=True)
+
+
+def look() -> float | None:
+    """See how far the process is, and let the window show it; seconds until the next look."""
+    preparation = _running[0]
+    code = preparation.process.poll()
+    if code is None and preparation.elapsed < LONGEST:
+        preparation.share = warm_up.share_done(preparation.folder, preparation.since)
+        _show(message())
+        return INTERVAL
+    _running.clear()
+    said = preparation.close()
+    if code != 0:
+        print(f"IFS Morph: could not prepare ahead, so its first use will take half a minute.\n{said}")
+    _show(None)
+    preparation.when_over()
+    return None
+
+
+def end() -> None:
+    """End the process, if it runs."""
+    if bpy.app.timers.is_registered(look):
+        bpy.app.timers.unregister(look)
+    while _running:
+        _running.pop().close()
+        _show(None)
+    kernels.keep_in(None)
+
+
+def is_running() -> bool:
+    """Whether what needs kernels has to wait."""
+    return bool(_running)
+
+
+def share() -> float:
+    """Share of the preparation that is over; 1 where none runs."""
+    return _running[0].share if _running else 1.0
+
+
+def message() -> str:
+    """What there is to wait for, in one sentence; empty if there is nothing."""
+    if not _running:
+        return ""
+    left = _running[0].elapsed * (1 - share()) / share() if share() > ENOUGH_TO_TELL else USUAL
+    return f"Preparing IFS Morph for this computer, the first time only. About {max(5 * round(left / 5), 5)} s left."
+
+
+def _show(text: str | None) -> None:
+    """Put a text into the status bar, or Blender's own, and draw sidebars again."""
+    for window in bpy.context.window_manager.windows:
+        window.workspace.status_text_set(text)
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
