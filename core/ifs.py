@@ -78,7 +78,10 @@ class IFS:
                 raise IFSError(f"{self._called} weight of map {i + 1} is {weights[i]:g}; use zero or more.")
             if weights.sum() == 0:
                 raise IFSError(f"{self._called} weights are all zero; give at least one map a weight.")
-        weights = weights / weights.sum()
+        total = weights.sum()
+        # What was scaled once stays as it is, so that an IFS written to a file and read again is the same to the bit.
+        if abs(total - 1) > len(weights) * np.finfo(float).eps:
+            weights = weights / total
         maps.flags.writeable = weights.flags.writeable = False
         object.__setattr__(self, "maps", maps)
         object.__setattr__(self, "weights", weights)

@@ -1,0 +1,175 @@
+"""What a file of shapes holds, whichever format it has: its entries, and what could not be read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..ifs import IFS, WEIGHT_FLOOR, IFSError
+
+NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+"""A number as programs write it; Python's own reading would also take underscores, words and other digits."""
+
+LARGEST_NUMBER = 1e100
+"""Larger ones are a mistake, and their products overflow."""
+
+LARGEST_COUNT = 1000
+"""More maps than that are a mistake, too."""
+
+
+class FormatError(IFSError):
+    """A file of shapes cannot be read or written; the message says what, where and what to do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """One shape of a file, with all that the file says of it.
+
+    Parameters
+    ----------
+    name : str
+        Unique within the file.
+    maps : (N, 2, 3) or (N, 3, 4)
+        ``[[a, b, e], [c, d, f]]`` each, y pointing up; with a third row and column in space.
+    weights : (N,), optional
+        How often each map is used, as the file says, not scaled; None where the file does not say.
+    transitions : (N, N), optional
+        After map i, map j follows with a probability proportional to ``weights[j] * transitions[i, j]``. None stands
+        for ones throughout, a plain IFS.
+    colors : (N,), optional
+        Place of each map's color in the palette, from 0 to 1.
+    color_speeds : (N,), optional
+        Share of a map's own color in its attractorlet, the rest being the color of the point before.
+    opacities : (N,), optional
+        How visible each map's attractorlet is. None stands for ones.
+    palette : (K, 3) uint8, optional
+        Red, green and blue from 0 to 255.
+    notes : tuple of str
+        Sentences on what the file says and the shape does not show.
+    """
+
+    name: str
+    maps: np.ndarray
+    weights: np.ndarray | None = None
+    transitions: np.ndarray | None = None
+    colors: np.ndarray | None = None
+    color_speeds: np.ndarray | None = None
+    opacities: np.ndarray | None = None
+    palette: np.ndarray | None = None
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def count(self) -> int:
+        """N, the number of maps."""
+        return len(self.maps)
+
+    @property
+    def dimension(self) -> int:
+        """2 for shapes of the plane, 3 for shapes in space."""
+        return self.maps.shape[1]
+
+    @property
+    def known_weights(self) -> np.ndarray:
+        """The weights (N,), or where the file has none the areas or volumes of the maps, none too small."""
+        if self.weights is not None:
+            return self.weights
+        if self.dimension == 2:
+            return IFS(self.maps).weights
+        volumes = np.abs(np.linalg.det(self.maps[:, :, :3]))
+        total = volumes.sum()
+        return np.maximum(volumes, WEIGHT_FLOOR * total) if total > 0 else np.ones(self.count)
+
+    def ifs(self) -> IFS:
+        """Return the shape as an IFS.
+
+        Raises
+        ------
+        IFSError
+            If the shape lies in space, or if its maps do not follow each other freely.
+        """
+        if self.dimension == 3:
+            raise IFSError(f"{called(self.name)} lies in space; an IFS here has maps of the plane.")
+        if self.transitions is not None:
+            raise IFSError(
+                f"{called(self.name)} has chaos, which rules which map may follow which; a plain IFS has none."
+            )
+        return IFS(self.maps, self.weights, self.name)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What was found in a file.
+
+    Parameters
+    ----------
+    entries : tuple of Entry
+        In the order of the file; names are unique.
+    problems : tuple of str
+        A sentence for each entry that could not be read, and for each thing that an entry read does not show.
+    """
+
+    entries: tuple[Entry, ...]
+    problems: tuple[str, ...]
+
+    @property
+    def shapes(self) -> dict[str, IFS]:
+        """The entries that are plain IFSs of the plane, by name."""
+        plain = (entry for entry in self.entries if entry.dimension == 2 and entry.transitions is None)
+        return {entry.name: entry.ifs() for entry in plain}
+
+
+def reading(entries: Iterable[Entry], problems: Iterable[str]) -> Reading:
+    """Put a reading together: give entries of one name a number, and list their notes after the other problems."""
+    unique: dict[str, Entry] = {}
+    for entry in entries:
+        name = unused_name(entry.name, unique)
+        unique[name] = replace(entry, name=name)
+    notes = (note for entry in unique.values() for note in entry.notes)
+    return Reading(tuple(unique.values()), (*problems, *notes))
+
+
+def unused_name(name: str, taken: Iterable[str]) -> str:
+    """Return the name, with the first number from 2 that makes it differ from those taken."""
+    unique, number = name, 2
+    while unique in taken:
+        unique, number = f"{name} {number}", number + 1
+    return unique
+
+
+def called(name: str) -> str:
+    """Quote a name for a sentence, on one line and not too long."""
+    return f"“{' '.join(name.split())[:60]}”"
+
+
+def number(word: str) -> float:
+    """Read one number; raises FormatError with the words that follow a colon."""
+    word = word.replace("\N{MINUS SIGN}", "-")
+    if not NUMBER.fullmatch(word):
+        raise FormatError(f"“{word[:40]}” is not a number.")
+    if abs(float(word)) > LARGEST_NUMBER:
+        raise FormatError(f"{word[:40]} is too large a number.")
+    return float(word)
+
+
+def require_writable(entry: Entry) -> None:
+    """Raise FormatError unless an entry is sound and reads back as it is, whatever the format."""
+    maps = np.asarray(entry.maps)
+    if maps.ndim != 3 or maps.shape[1:] not in ((2, 3), (3, 4)) or len(maps) == 0:
+        raise FormatError(
+            f"{called(entry.name)} has maps of shape {maps.shape}; (N, 2, 3) or (N, 3, 4) can be written."
+        )
+    if len(maps) > LARGEST_COUNT:
+        raise FormatError(f"{called(entry.name)} has {len(maps)} maps; at most {LARGEST_COUNT} can be written.")
+    if not (np.abs(maps) <= LARGEST_NUMBER).all():
+        raise FormatError(f"{called(entry.name)} holds NaN, infinity or a number beyond {LARGEST_NUMBER:g}.")
+    weights = entry.known_weights
+    if weights.shape != (len(maps),) or not (weights <= LARGEST_NUMBER).all():
+        raise FormatError(f"{called(entry.name)} has {len(maps)} maps; give each a weight that is a sensible number.")
+    for k in np.flatnonzero(weights <= 0):
+        raise FormatError(
+            f"{called(entry.name)}, map {k + 1}: the weight is {weights[k]:g}, which other programs take for a map "
+            "that is not there; give it a weight above zero."
+        )
