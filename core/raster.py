@@ -67,6 +67,7 @@ def render(
     samples: float | None = None,
     threads: int | None = None,
     norms: np.ndarray | None = None,
+    dtype: type = np.float32,
 ) -> np.ndarray:
     """Render an attractor.
 
@@ -88,11 +89,13 @@ def render(
         Upper bounds of the norms of the maps over a whole animation. Where the attractor is cut then depends on them
         instead of on this very IFS, so that no pixel is found in one frame and lost in the next because of the cut.
         Of no effect where they are so large that it would take too long, see `FIXED_GROWTH`.
+    dtype : type
+        Of a set; ``numpy.uint8`` takes a quarter of the memory and is what `shading.shade` likes best.
 
     Returns
     -------
     (height, width)
-        Row 0 is the lowest. *Set*: float32, 1 where the attractor meets a pixel and 0 elsewhere. *Density*: int64, the
+        Row 0 is the lowest. *Set*: `dtype`, 1 where the attractor meets a pixel and 0 elsewhere. *Density*: int64, the
         measure that the weights give, `TOTAL_MASS` of it for the whole attractor. *Attractorlet*: uint8, 0 where there
         is none and 1 + i for attractorlet i, the last of those that meet the pixel.
 
@@ -129,7 +132,7 @@ def render(
         chaos.deposit(canvas, root, maps, weights, max(samples, CHAOS_POINTS), TOTAL_MASS, threads)
     else:
         chaos.mark(canvas, root, maps, weights, labels, max(samples, CHAOS_POINTS), threads)
-    return canvas.astype(np.float32) if mode == "set" else canvas
+    return canvas.astype(dtype, copy=False) if mode == "set" else canvas
 
 
 def _draw(canvas, root, maps, norms, weights, labels, growth, dimension, samples, threads) -> None:

@@ -7,7 +7,6 @@ to render more pixels than are shown, and to take the mean of each square of the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 
@@ -25,6 +24,9 @@ RAMP_ENTRIES = 256
 
 SHADES = 4096
 """Colours that a ramp is drawn with; neighbours are too much alike to tell."""
+
+STRIP_PIXELS = 2**17
+"""Pictures are shaded in strips of whole rows of about so many pixels, whatever the threads."""
 
 Stops = Sequence[tuple[float, Sequence[float]]]
 
@@ -84,7 +86,9 @@ def ramp_lookup(stops: Stops, entries: int = RAMP_ENTRIES) -> np.ndarray:
     return np.stack([np.interp(steps, positions[order], colors[order, k]) for k in range(4)], axis=1).astype(np.float32)
 
 
-def tone_map(density: np.ndarray, curve: str = "log", exposure: float = 0.0, gamma: float = 2.2) -> np.ndarray:
+def tone_map(
+    density: np.ndarray, curve: str = "log", exposure: float = 0.0, gamma: float = 2.2, pixels: int | None = None
+) -> np.ndarray:
     """Brightness from density.
 
     With x the density relative to an even spread over the picture, times 2 ** exposure, and W = `WHITE`:
@@ -100,6 +104,8 @@ def tone_map(density: np.ndarray, curve: str = "log", exposure: float = 0.0, gam
         In stops.
     gamma : float
         Positive; of the curve *gamma* only.
+    pixels : int, optional
+        Of the whole picture, where the density is that of a part.
 
     Returns
     -------
@@ -110,7 +116,8 @@ def tone_map(density: np.ndarray, curve: str = "log", exposure: float = 0.0, gam
         raise ValueError(f"There is no curve “{curve}”; choose one of {', '.join(CURVES)}.")
     if not gamma > 0:
         raise ValueError(f"Gamma is {gamma:g}; it must be above zero.")
-    brightness = np.multiply(density, density.size / TOTAL_MASS * 2.0**exposure, dtype=np.float32, casting="unsafe")
+    even = TOTAL_MASS / (pixels or density.size)
+    brightness = np.multiply(density, 2.0**exposure / even, dtype=np.float32, casting="unsafe")
     if curve == "log":
         brightness += 1
         np.log2(brightness, out=brightness)
@@ -164,36 +171,44 @@ def shade(
     factor = int(antialiasing)
     if factor < 1 or picture.shape[0] % factor or picture.shape[1] % factor:
         raise ValueError(f"A picture of shape {picture.shape} has no whole squares of {antialiasing} pixels a side.")
+    height, width = picture.shape[0] // factor, picture.shape[1] // factor
     colors = np.asarray(colors, dtype=np.float32)
     background = np.asarray(background, dtype=np.float32)
-    result = np.empty((picture.shape[0] // factor, picture.shape[1] // factor, 4), np.float32)
+
+    def finished(shades: np.ndarray) -> np.ndarray:
+        shades = _over(shades, background)
+        return _multiplied(shades) if premultiplied else shades
+
     if mode == "attractorlet":
         table = np.zeros((256, 4), np.float32)
         table[1 : len(colors) + 1] = colors
         table = _multiplied(_over(table, background))
-        _in_strips(lambda *rows: mix_labels(picture, table, factor, premultiplied, *rows, result), len(result), threads)
-        return result
-    if mode == "density":
-        if factor > 1:
-            total = np.empty(result.shape[:2], np.int64)
-            _in_strips(lambda *rows: sum_squares(picture, factor, *rows, total), len(result), threads)
-            picture, factor = total, 1
-        picture = tone_map(picture, curve, exposure, gamma)
-        shades = ramp_lookup(list(zip(np.linspace(0, 1, len(colors)), colors, strict=True)), SHADES)
+
+        def paint(part: np.ndarray, result: np.ndarray) -> None:
+            mix_labels(part, table, factor, premultiplied, result)
+
+    elif mode == "density":
+        table = finished(ramp_lookup(list(zip(np.linspace(0, 1, len(colors)), colors, strict=True)), SHADES))
+
+        def paint(part: np.ndarray, result: np.ndarray) -> None:
+            part = part if factor == 1 else sum_squares(part, factor)
+            look_up(tone_map(part, curve, exposure, gamma, height * width), table, result)
+
     else:
         # A pixel has one color for each number of its squares that are set.
         shades = np.tile(colors, (factor * factor + 1, 1))
         shades[:, 3] *= np.linspace(0, 1, factor * factor + 1)
-    table = _over(shades, background)
-    table = _multiplied(table) if premultiplied else table
-    _in_strips(lambda *rows: look_up(picture, factor, table, *rows, result), len(result), threads)
+        table = finished(shades)
+
+        def paint(part: np.ndarray, result: np.ndarray) -> None:
+            count_marks(part.astype(np.uint8, copy=False), table, factor, result)
+
+    result = np.empty((height, width, 4), np.float32)
+    rows = max(1, STRIP_PIXELS // width)
+    strips = [slice(first, first + rows) for first in range(0, height, rows)]
+    whole = picture.reshape(height, factor, factor * width)
+    parallel.run(lambda strip: paint(whole[strip].reshape(-1, factor * width), result[strip]), strips, threads)
     return result
-
-
-def _in_strips(function, height: int, threads: int | None) -> None:
-    """Call a function with the first and last row (exclusive) of a strip for each thread."""
-    borders = np.linspace(0, height, parallel.thread_count(threads) + 1).astype(int)
-    parallel.run(lambda rows: function(*rows), list(pairwise(borders)), threads)
 
 
 def _over(colors: np.ndarray, background: np.ndarray) -> np.ndarray:
@@ -209,52 +224,84 @@ def _multiplied(colors: np.ndarray) -> np.ndarray:
 
 
 @njit(nogil=True, cache=True)
-def sum_squares(picture, factor, first_row, last_row, result):
-    """Sums (H, W) over squares of `factor` pixels a side."""
-    for row in range(first_row, last_row):
-        for column in range(result.shape[1]):
-            total = 0
-            for i in range(row * factor, (row + 1) * factor):
-                for j in range(column * factor, (column + 1) * factor):
-                    total += picture[i, j]
-            result[row, column] = total
+def sum_squares(density, factor):
+    """Sums over squares of `factor` pixels a side."""
+    total = np.zeros((density.shape[0] // factor, density.shape[1] // factor), np.int64)
+    for i in range(density.shape[0]):
+        samples, line = density[i], total[i // factor]
+        for column in range(line.shape[0]):
+            for j in range(column * factor, (column + 1) * factor):
+                line[column] += samples[j]
+    return total
 
 
 @njit(nogil=True, cache=True)
-def look_up(picture, factor, table, first_row, last_row, result):
-    """Colours of means over squares of values in [0, 1]: the nearest in a table (K, 4)."""
-    width = result.shape[1]
-    scale = np.float32((table.shape[0] - 1) / (factor * factor))
-    totals = np.empty(width, np.float32)
-    for row in range(first_row, last_row):
-        for column in range(width):
-            totals[column] = 0
+def look_up(brightness, table, result):
+    """Colours of values in [0, 1]: the nearest in a table (K, 4)."""
+    scale = np.float32(table.shape[0] - 1)
+    for row in range(result.shape[0]):
+        values, line = brightness[row], result[row]
+        for column in range(line.shape[0]):
+            k = np.uint32(values[column] * scale + np.float32(0.5))
+            line[column, 0], line[column, 1] = table[k, 0], table[k, 1]
+            line[column, 2], line[column, 3] = table[k, 2], table[k, 3]
+
+
+@njit(nogil=True, cache=True)
+def count_marks(marks, table, factor, result):
+    """Colours of squares by how many of their marks, 0 or 1, are set, from a table (factor ** 2 + 1, 4).
+
+    Marks are first added up along the columns: those are neighbours in memory, and many are added at a time.
+    """
+    counts = np.empty(marks.shape[1], np.uint16)
+    for row in range(result.shape[0]):
+        counts[:] = 0
         for i in range(row * factor, (row + 1) * factor):
-            for j in range(factor):
-                for column in range(width):
-                    totals[column] += picture[i, column * factor + j]
-        for column in range(width):
-            k = np.uint32(totals[column] * scale + np.float32(0.5))
-            for channel in range(4):
-                result[row, column, channel] = table[k, channel]
+            samples = marks[i]
+            for j in range(counts.shape[0]):
+                counts[j] += samples[j]
+        line = result[row]
+        for column in range(line.shape[0]):
+            k = np.uint32(0)
+            for j in range(column * factor, (column + 1) * factor):
+                k += counts[j]
+            line[column, 0], line[column, 1] = table[k, 0], table[k, 1]
+            line[column, 2], line[column, 3] = table[k, 2], table[k, 3]
 
 
 @njit(nogil=True, cache=True)
-def mix_labels(labels, table, factor, premultiplied, first_row, last_row, result):
-    """Mean colours of squares of labels, from a table (256, 4) of colours that are multiplied by their alpha."""
+def mix_labels(labels, table, factor, premultiplied, result):
+    """Mean colours of squares of labels, from a table (256, 4) of colours that are multiplied by their alpha.
+
+    Nearly all squares have one label only, and a colour that stands in the table.
+    """
     share = np.float32(1 / (factor * factor))
-    for row in range(first_row, last_row):
-        for column in range(result.shape[1]):
-            red, green, blue, alpha = np.float32(0), np.float32(0), np.float32(0), np.float32(0)
-            for i in range(row * factor, (row + 1) * factor):
-                for j in range(column * factor, (column + 1) * factor):
-                    label = labels[i, j]
-                    red += table[label, 0]
-                    green += table[label, 1]
-                    blue += table[label, 2]
-                    alpha += table[label, 3]
-            scale = share if premultiplied else (1 / alpha if alpha > 0 else np.float32(0))
-            result[row, column, 0] = red * scale
-            result[row, column, 1] = green * scale
-            result[row, column, 2] = blue * scale
-            result[row, column, 3] = alpha * share
+    differs = np.empty(labels.shape[1], np.uint8)
+    for row in range(result.shape[0]):
+        line, top = result[row], labels[row * factor]
+        differs[:] = 0
+        for i in range(row * factor + 1, (row + 1) * factor):
+            samples = labels[i]
+            for j in range(differs.shape[0]):
+                differs[j] |= samples[j] ^ top[j]
+        for column in range(line.shape[0]):
+            left, right = column * factor, (column + 1) * factor
+            label = top[left]
+            mixed = differs[left]
+            for j in range(left + 1, right):
+                mixed |= differs[j] | (top[j] ^ label)
+            red, green, blue, alpha = table[label, 0], table[label, 1], table[label, 2], table[label, 3]
+            if mixed != 0:
+                red, green, blue, alpha = np.float32(0), np.float32(0), np.float32(0), np.float32(0)
+                for i in range(row * factor, (row + 1) * factor):
+                    samples = labels[i]
+                    for j in range(left, right):
+                        label = samples[j]
+                        red += table[label, 0] * share
+                        green += table[label, 1] * share
+                        blue += table[label, 2] * share
+                        alpha += table[label, 3] * share
+            if not premultiplied:
+                scale = 1 / alpha if alpha > 0 else np.float32(0)
+                red, green, blue = red * scale, green * scale, blue * scale
+            line[column, 0], line[column, 1], line[column, 2], line[column, 3] = red, green, blue, alpha

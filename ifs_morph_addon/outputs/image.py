@@ -130,6 +130,7 @@ def _picture(owner, settings, morph, frame) -> np.ndarray:
         (left, bottom, right, top),
         mode,
         norms=_norms(owner, morph, frame),
+        dtype=np.uint8,
     )
     return shading.shade(
         samples,
