@@ -67,9 +67,10 @@ def read_flames(text: str) -> Reading:
     entries, problems, found = [], [], False
     for flame in _flames(text):
         found = True
-        for layer in [layer for layer in flame.layers if layer.xforms] or [flame]:
-            if layer.attributes.get("visible", "1").strip() == "0":
-                continue
+        layers = [layer for layer in flame.layers if layer.attributes.get("visible", "1").strip() != "0"]
+        if flame.layers and not layers:
+            problems.append(f"{flame.called} (line {flame.line}): all its layers are hidden.")
+        for layer in layers if flame.layers else [flame]:
             try:
                 entries.append(_entry(layer))
             except FormatError as error:
