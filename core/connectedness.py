@@ -66,7 +66,7 @@ def connectedness(ifs: IFS, tolerance: float = 1 / 300) -> Verdict:
         search ran out, which happens to heavily overlapping, flat maps. NO_ATTRACTOR: certain.
     """
     linear = np.ascontiguousarray(ifs.linear).reshape(-1, 4)
-    state, gap, labels = decision.decide_column(linear, ifs.translation[None].copy(), float(tolerance), True)
+    state, gap, labels = decision.decide_frames(linear[None], ifs.translation[None].copy(), float(tolerance), True)
     return Verdict(Connectedness(state[0]), (float(gap[0, 0]), float(gap[0, 1])), labels[0])
 
 

@@ -6,13 +6,18 @@ the others are (`gap`).
 
 from __future__ import annotations
 
+import math
+from collections import namedtuple
+
 import numpy as np
 
 from . import enclosure
-from .enclosure import enclosing_disc, outer_polygon, shrinking_words
-from .gap import measure_gap
+from .enclosure import enclosing_disc, shrinking_words
+from .gap import empty_search, measure_gap
 from .kernels import njit
-from .overlap import MEET, SLACK, UNKNOWN, distance, join, normalize, pair_test, set_piece, surely_one_piece
+from .overlap import MEET, SLACK, UNKNOWN, join, pair_test, surely_one_piece
+from .polygon import directions_seen, shrink_polygon
+from .tree import CAPACITY, NORM, View, center, empty_tree, plant
 
 CONNECTED, DISCONNECTED, UNDECIDED, NO_ATTRACTOR = 0, 1, 2, 3
 """States of an attractor, the values of `connectedness.Connectedness`."""
@@ -25,54 +30,75 @@ POLYGON_BUDGET = 4000
 """Pairs of pieces looked at in the first stage, which knows discs only, and in the second."""
 
 STACK = 4096
-GAP_PAIRS = 6000
-"""Pairs of pieces held at once by the pair test, and by the gap search beside those it starts with."""
+"""Pairs of pieces held at once by the pair test."""
+
+DIRECTIONS = 16
+POLYGON_PRECISION = 1e-3
+"""Of the outer polygon: its sides, and the change at which it is good enough, relative to the disc's radius."""
+
+Desk = namedtuple("Desk", "tree search first second key left right between reach corners unit points")
+"""Work space, made once for many attractors."""
 
 
 @njit(nogil=True, cache=True)
-def decide(linear, unit, areas, tolerance, labels, first, second, key):
+def empty_desk(count):
+    """Work space for N maps."""
+    pairs = max(1, count * (count - 1) // 2)
+    return Desk(
+        empty_tree(CAPACITY),
+        empty_search(count),
+        np.empty(STACK, np.int32),
+        np.empty(STACK, np.int32),
+        np.empty(STACK),
+        np.empty(pairs, np.int64),
+        np.empty(pairs, np.int64),
+        np.empty(pairs),
+        np.empty(DIRECTIONS),
+        np.empty((DIRECTIONS, 2)),
+        np.empty((count, 2)),
+        np.empty((count, 2)),
+    )
+
+
+@njit(nogil=True, cache=True)
+def decide(desk, linear, areas, seen, view, tolerance, labels):
     """State of one attractor, and in `labels` (N,) the component that each attractorlet is known to belong to.
 
     An attractor is connected if and only if the overlap graph of its attractorlets is (Hata 1985; Burch & Hart 1997,
     Theorem 2). Discs first; the outer polygon only for pairs that discs leave open.
     """
     count = linear.shape[0]
-    for i in range(count):
-        labels[i] = i
-    if surely_one_piece(labels, areas):
-        return CONNECTED
-    pairs = count * (count - 1) // 2
-    left, right = np.empty(pairs, np.int64), np.empty(pairs, np.int64)
-    between = np.empty(pairs)
-    pieces = np.empty((count, 7))
-    for i in range(count):
-        set_piece(linear, unit, i, pieces[i])
+    tree = desk.tree
+    left, right, between = desk.left, desk.right, desk.between
     known = 0
     for i in range(count):
+        labels[i] = i
+        one_x, one_y = center(tree, i, view)
         for j in range(i + 1, count):
-            apart = distance(pieces[i], pieces[j]) - pieces[i, 6] - pieces[j, 6]
-            if apart > SLACK:
+            other_x, other_y = center(tree, j, view)
+            apart = math.sqrt((one_x - other_x) * (one_x - other_x) + (one_y - other_y) * (one_y - other_y))
+            apart -= view.radius * (tree.word[i, NORM] + tree.word[j, NORM])
+            if apart > view.slack:
                 continue
             place = known
             while place > 0 and between[place - 1] > apart:
-                between[place] = between[place - 1]
-                left[place], right[place] = left[place - 1], right[place - 1]
+                between[place], left[place], right[place] = between[place - 1], left[place - 1], right[place - 1]
                 place -= 1
             between[place], left[place], right[place] = apart, i, j
             known += 1
-    corners = np.empty((0, 2))
     for stage in range(2):
+        corners = desk.corners[: stage * DIRECTIONS]
         if stage == 1:
-            _, corners = outer_polygon(linear, unit, 1.0, enclosure.DIRECTIONS, 1e-3)
+            find_polygon(desk, linear, seen, view)
         still_open = 0
         for pair in range(known):
             i, j = left[pair], right[pair]
             if labels[i] == labels[j]:
                 continue
             budget = DISC_BUDGET if stage == 0 else POLYGON_BUDGET
-            outcome = pair_test(linear, unit, i, j, tolerance, corners, budget, first, second, key)
+            outcome = pair_test(tree, count, view, i, j, tolerance, corners, budget, desk.first, desk.second, desk.key)
             if outcome == MEET:
-                join(labels, min(labels[i], labels[j]), max(labels[i], labels[j]))
+                join(labels, i, j)
                 if surely_one_piece(labels, areas):
                     return CONNECTED
             elif outcome == UNKNOWN:
@@ -88,13 +114,111 @@ def decide(linear, unit, areas, tolerance, labels, first, second, key):
 
 
 @njit(nogil=True, cache=True)
-def decide_column(linear, translations, tolerance, with_gap):
+def find_polygon(desk, linear, seen, view):
+    """Write the corners of the outer polygon, about the centre of the disc."""
+    normal, sector, share = seen
+    for i in range(linear.shape[0]):
+        x, y = center(desk.tree, i, view)
+        desk.unit[i, 0], desk.unit[i, 1] = x - view.x, y - view.y
+    tolerance = POLYGON_PRECISION * view.radius
+    shrink_polygon(normal, sector, share, desk.unit, view.radius, tolerance, desk.reach, desk.corners)
+
+
+@njit(nogil=True, cache=True)
+def find_points(desk, linear):
+    """Write the fixed points of the maps, about the centre of the disc: points on the attractor."""
+    for i in range(linear.shape[0]):
+        a, b, c, d = 1 - linear[i, 0], -linear[i, 1], -linear[i, 2], 1 - linear[i, 3]
+        det = a * d - b * c
+        desk.points[i, 0] = (d * desk.unit[i, 0] - b * desk.unit[i, 1]) / det
+        desk.points[i, 1] = (a * desk.unit[i, 1] - c * desk.unit[i, 0]) / det
+
+
+@njit(nogil=True, cache=True)
+def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, state, gap, labels):
+    """Decide attractors that share their linear parts, as those of one u do; arguments as in `decide_column`.
+
+    `state` (V,), `gap` (V, 2) and `labels` (V, N) are written.
+    """
+    nodes, count = along.shape[0], linear.shape[0]
+    for node in range(nodes):
+        gap[node, 0] = gap[node, 1] = np.nan
+        for i in range(count):
+            labels[node, i] = i
+    outcome, parent, letter, product, size, limit = shrinking_words(linear)
+    areas = np.abs(linear[:, 0] * linear[:, 3] - linear[:, 1] * linear[:, 2])
+    if outcome != enclosure.COVERED:
+        for node in range(nodes):
+            state[node] = NO_ATTRACTOR if outcome == enclosure.NO_ATTRACTOR else UNDECIDED
+        return
+    if nodes > 0 and surely_one_piece(labels[0], areas):
+        for node in range(nodes):
+            state[node], gap[node, 0], gap[node, 1] = CONNECTED, 0.0, 0.0
+            for i in range(count):
+                labels[node, i] = 0
+        return
+    seen = directions_seen(linear, DIRECTIONS)
+    moved, translation = np.empty((count, 2)), np.empty((count, 2))
+    origin_x, origin_y = mean_fixed_point(linear, start, drift, along[nodes // 2])
+    for i in range(count):
+        # About an origin close by, so that a shape far away is as precise as any.
+        moved[i, 0] = start[i, 0] + linear[i, 0] * origin_x + linear[i, 1] * origin_y - origin_x
+        moved[i, 1] = start[i, 1] + linear[i, 2] * origin_x + linear[i, 3] * origin_y - origin_y
+    tree = desk.tree
+    plant(tree, linear, moved, drift)
+    for node in range(nodes):
+        largest = abs(origin_x) + abs(origin_y)
+        for i in range(count):
+            translation[i, 0] = moved[i, 0] + along[node] * drift[i, 0]
+            translation[i, 1] = moved[i, 1] + along[node] * drift[i, 1]
+            largest = max(largest, abs(translation[i, 0]) + abs(translation[i, 1]))
+        x, y, radius = enclosing_disc(linear, translation, parent, letter, product, size, limit)
+        if radius <= POINT * (abs(origin_x + x) + abs(origin_y + y)):
+            state[node], gap[node, 0], gap[node, 1] = CONNECTED, 0.0, 0.0
+            for i in range(count):
+                labels[node, i] = 0
+            continue
+        if tree.used[0] > CAPACITY // 2:
+            plant(tree, linear, moved, drift)
+        view = View(x, y, along[node], radius, SLACK * max(radius, abs(x) + abs(y)))
+        state[node] = decide(desk, linear, areas, seen, view, tolerance, labels[node])
+        if state[node] == CONNECTED:
+            gap[node, 0], gap[node, 1] = 0.0, tolerance
+            for i in range(count):
+                labels[node, i] = 0
+        elif with_gap:
+            find_polygon(desk, linear, seen, view)
+            find_points(desk, linear)
+            known = labels[node].copy()
+            low, high = measure_gap(tree, count, view, tolerance, desk.corners, desk.points, known, desk.search)
+            high = max(high, tolerance * radius) / (2 * radius)
+            gap[node, 0] = max(low / radius, SLACK) / 2 if state[node] == DISCONNECTED else 0.0
+            gap[node, 1] = max(high, gap[node, 0])
+
+
+@njit(nogil=True, cache=True)
+def mean_fixed_point(linear, start, drift, along):
+    """Mean of the fixed points of the maps."""
+    x = y = 0.0
+    for i in range(linear.shape[0]):
+        a, b, c, d = 1 - linear[i, 0], -linear[i, 1], -linear[i, 2], 1 - linear[i, 3]
+        det = (a * d - b * c) * linear.shape[0]
+        e, f = start[i, 0] + along * drift[i, 0], start[i, 1] + along * drift[i, 1]
+        x += (d * e - b * f) / det
+        y += (a * f - c * e) / det
+    return x, y
+
+
+@njit(nogil=True, cache=True)
+def decide_column(linear, start, drift, along, tolerance, with_gap):
     """States of attractors that share their linear parts, as those of one u do.
 
     Parameters
     ----------
     linear : (N, 4)
-    translations : (V, N, 2)
+    start, drift : (N, 2)
+    along : (V,)
+        The translations of attractor k are ``start + along[k] * drift``.
     tolerance : float
         Relative to the enclosing diameter.
     with_gap : bool
@@ -108,44 +232,29 @@ def decide_column(linear, translations, tolerance, with_gap):
     labels : (V, N) int64
         Components of attractorlets that are known to meet.
     """
-    nodes, count = translations.shape[0], linear.shape[0]
-    state = np.empty(nodes, np.uint8)
-    gap = np.full((nodes, 2), np.nan)
-    labels = np.zeros((nodes, count), np.int64)
-    outcome, parent, letter, product, size, limit = shrinking_words(linear)
-    if outcome != enclosure.COVERED:
-        state[:] = NO_ATTRACTOR if outcome == enclosure.NO_ATTRACTOR else UNDECIDED
-        for i in range(count):
-            labels[:, i] = i
-        return state, gap, labels
-    areas = np.abs(linear[:, 0] * linear[:, 3] - linear[:, 1] * linear[:, 2])
-    if surely_one_piece(np.arange(count), areas):
-        state[:] = CONNECTED
-        gap[:] = 0.0
-        return state, gap, labels
-    room = GAP_PAIRS + count * (count - 1) // 2
-    first, second = np.empty((room, 7)), np.empty((room, 7))
-    ends, order = np.empty((room, 3), np.int64), np.empty(room, np.int64)
-    key = np.empty(room)
-    unit = np.empty((count, 2))
-    scratch = np.empty(count, np.int64)
-    for node in range(nodes):
-        x, y, radius = enclosing_disc(linear, translations[node], parent, letter, product, size, limit)
-        if radius <= POINT * (abs(x) + abs(y)):
-            state[node], gap[node] = CONNECTED, 0.0
-            continue
-        normalize(linear, translations[node], x, y, radius, unit)
-        state[node] = decide(linear, unit, areas, tolerance, labels[node], first[:STACK], second[:STACK], key)
-        if state[node] == CONNECTED:
-            labels[node] = 0
-            gap[node, 0], gap[node, 1] = 0.0, tolerance
-        elif with_gap:
-            low, high = measure_gap(linear, unit, tolerance, scratch, first, second, ends, key, order)
-            gap[node, 0] = max(low, SLACK) / 2 if state[node] == DISCONNECTED else 0.0
-            gap[node, 1] = high / 2
+    nodes, count = along.shape[0], linear.shape[0]
+    state, gap = np.empty(nodes, np.uint8), np.empty((nodes, 2))
+    labels = np.empty((nodes, count), np.int64)
+    decide_drift(empty_desk(count), linear, start, drift, along, tolerance, with_gap, state, gap, labels)
     return state, gap, labels
 
 
-def is_connected(linear: np.ndarray, translation: np.ndarray, tolerance: float) -> bool:
-    """Whether the attractor of one set of maps, (N, 4) and (N, 2), is connected at the tolerance."""
-    return decide_column(linear, translation[None], tolerance, False)[0][0] == CONNECTED
+@njit(nogil=True, cache=True)
+def decide_frames(linear, translation, tolerance, with_gap):
+    """States of attractors of any maps (F, N, 4), (F, N, 2), such as the frames of a path; returns as above."""
+    frames, count = linear.shape[0], linear.shape[1]
+    state, gap = np.empty(frames, np.uint8), np.empty((frames, 2))
+    labels = np.empty((frames, count), np.int64)
+    desk = empty_desk(count)
+    drift, along = np.zeros((count, 2)), np.zeros(1)
+    for k in range(frames):
+        here = slice(k, k + 1)
+        decide_drift(
+            desk, linear[k], translation[k], drift, along, tolerance, with_gap, state[here], gap[here], labels[here]
+        )
+    return state, gap, labels
+
+
+def are_connected(linear: np.ndarray, translation: np.ndarray, tolerance: float) -> np.ndarray:
+    """Which of the attractors of maps (F, N, 4), (F, N, 2) are connected at the tolerance, as bools (F,)."""
+    return decide_frames(linear, translation, tolerance, False)[0] == CONNECTED

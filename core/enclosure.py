@@ -1,4 +1,4 @@
-"""Where an attractor can be: words that shrink, the enclosing disc, the outer polygon.
+"""Where an attractor can be: words that shrink, and the disc that encloses it.
 
 The kernels take maps as rows: `linear` (N, 4) holds a, b, c, d and `translation` (N, 2) holds e, f. A *word* is a
 composition ``w_i w_j w_k ...``; the attractor is the union of its images under any set of words that has one prefix
@@ -28,9 +28,6 @@ TIGHT_BUDGET = 600
 
 SPECTRAL_SLACK = 1e-12
 """Rounding allowed when a spectral radius is compared with 1."""
-
-DIRECTIONS = 16
-"""Sides of the outer polygon."""
 
 
 @njit(nogil=True, cache=True)
@@ -88,7 +85,8 @@ def cover(linear, limit, budget):
     count, head, outcome = count_maps, 0, COVERED
     for i in range(count_maps):
         parent[i], letter[i] = -1, i
-        product[i] = linear[i]
+        for k in range(4):
+            product[i, k] = linear[i, k]
         size[i] = norm(linear[i, 0], linear[i, 1], linear[i, 2], linear[i, 3])
     while head < count:
         if size[head] > limit:
@@ -173,60 +171,3 @@ def enclosing_disc(linear, translation, parent, letter, product, size, limit):
         x += worst_x / (step + 3)
         y += worst_y / (step + 3)
     return best_x, best_y, best * (1 + 1e-12)
-
-
-@njit(nogil=True, cache=True)
-def outer_polygon(linear, translation, radius, directions, tolerance):
-    """A polygon that holds the attractor: for each of evenly spaced directions, how far it can reach.
-
-    Starts at the disc about the origin and applies ``K <- K n outer(U w_i K)``; it is an enclosure at every step.
-
-    Parameters
-    ----------
-    linear, translation : (N, 4), (N, 2)
-    radius : float
-        Of a disc about the origin that holds the attractor.
-    directions : int
-        How many; direction k is at the angle 2 pi k / directions.
-    tolerance : float
-        Stop when no reach changes by more than this.
-
-    Returns
-    -------
-    reach : (directions,)
-        The largest ``<x, direction>``.
-    corners : (directions, 2)
-        Between direction k and k + 1; their hull holds the attractor.
-    """
-    cos, sin = np.empty(directions), np.empty(directions)
-    for k in range(directions):
-        cos[k], sin[k] = math.cos(2 * math.pi * k / directions), math.sin(2 * math.pi * k / directions)
-    reach = np.full(directions, radius)
-    following = np.empty(directions)
-    corners = np.empty((directions, 2))
-    across = cos[0] * sin[1] - sin[0] * cos[1]
-    for _ in range(100):
-        for k in range(directions):
-            n = (k + 1) % directions
-            corners[k, 0] = (reach[k] * sin[n] - reach[n] * sin[k]) / across
-            corners[k, 1] = (reach[n] * cos[k] - reach[k] * cos[n]) / across
-        change = 0.0
-        for k in range(directions):
-            furthest = -np.inf
-            for i in range(linear.shape[0]):
-                p = linear[i, 0] * cos[k] + linear[i, 2] * sin[k]
-                q = linear[i, 1] * cos[k] + linear[i, 3] * sin[k]
-                within = -np.inf
-                for corner in range(directions):
-                    within = max(within, p * corners[corner, 0] + q * corners[corner, 1])
-                furthest = max(furthest, within + translation[i, 0] * cos[k] + translation[i, 1] * sin[k])
-            following[k] = min(reach[k], furthest + 1e-14 * radius)
-            change = max(change, reach[k] - following[k])
-        reach[:] = following
-        if change <= tolerance:
-            break
-    for k in range(directions):
-        n = (k + 1) % directions
-        corners[k, 0] = (reach[k] * sin[n] - reach[n] * sin[k]) / across
-        corners[k, 1] = (reach[n] * cos[k] - reach[k] * cos[n]) / across
-    return reach, corners

@@ -2,108 +2,148 @@
 
 from __future__ import annotations
 
+import math
+from collections import namedtuple
+
 import numpy as np
 
-from .enclosure import DIRECTIONS, outer_polygon
 from .heap import sift_down, sift_up
 from .kernels import njit
-from .overlap import SLACK, distance, join, polygon_distance, set_child, set_piece
+from .overlap import join
+from .polygon import furthest, polygon_distance
+from .tree import NORM, A, B, C, D, center, children
 
 PRECISION = 0.05
-"""The gap is measured until pieces are this small beside their distance."""
+"""Relative width of the bracket of a distance at which it is known well enough."""
+
+PAIRS = 6000
+"""Pairs of pieces held at once, beside those that the search starts with."""
 
 TIE = 1e-9
 """Weight of a pair's size in the order of the search."""
 
+POLYGON_STEPS = 1
+"""Of Gilbert's algorithm; where it leaves much to gain, the next parts gain more for less."""
+
+Search = namedtuple("Search", "word end tried key order")
+"""Work space: pairs of words (M, 2), the attractorlets that they are parts of (M, 2), whether the polygon was tried
+(M,), the lower bounds (M,), and the heap of places of pairs (M,)."""
+
 
 @njit(nogil=True, cache=True)
-def measure_gap(linear, unit, tolerance, labels, first, second, ends, key, order):
-    """Bracket of the gap: the longest edge of the minimum spanning tree over the distances of attractorlets.
+def empty_search(count):
+    """Work space for N maps."""
+    pairs = PAIRS + count * (count - 1) // 2
+    return Search(
+        np.empty((pairs, 2), np.int32),
+        np.empty((pairs, 2), np.int32),
+        np.empty(pairs, np.bool_),
+        np.empty(pairs),
+        np.empty(pairs, np.int64),
+    )
+
+
+@njit(nogil=True, cache=True)
+def measure_gap(tree, count, view, tolerance, corners, points, labels, search):
+    """Bracket of the gap: the longest edge of the minimum spanning tree over the distances of components.
 
     Kruskal's algorithm on edges that are known by bounds only: one heap holds pairs of pieces of all pairs of
-    attractorlets, the least lower bound on top; that pair is split until it is small, and then is an edge. Discs
-    bound a pair when it enters the heap, the outer polygon when it first comes out.
+    attractorlets, the least lower bound on top; that pair is split until its distance is known, and then is an edge.
+    Discs bound a pair when it enters the heap, the outer polygon when it first comes out.
 
     Parameters
     ----------
-    linear, unit, tolerance
+    tree, count, view, tolerance, corners
         As in `pair_test`.
+    points : (P, 2)
+        On the attractor, about the centre of its disc.
     labels : (N,)
-        Components; written over.
-    first, second, ends, key, order : (M, 7) twice, (M, 3), (M,) twice
-        Work space, with room for more than all pairs of attractorlets.
+        Components of attractorlets that are known to meet; written over.
+    search : Search
 
     Returns
     -------
     low, high : float
-        In units of the enclosing radius.
     """
-    count = linear.shape[0]
-    one, other = np.empty(7), np.empty(7)
-    _, corners = outer_polygon(linear, unit, 1.0, DIRECTIONS, 1e-3)
+    word = tree.word
+    used = length = components = 0
     for i in range(count):
-        labels[i] = i
-    used = length = 0
-    for i in range(count):
+        components += labels[i] == i
         for j in range(i + 1, count):
-            set_piece(linear, unit, i, first[used])
-            set_piece(linear, unit, j, second[used])
-            ends[used, 0], ends[used, 1] = i, j
-            length = push_pair(first, second, ends, key, order, used, length, 0.0)
-            used += 1
+            if labels[i] != labels[j]:
+                search.word[used, 0], search.word[used, 1] = i, j
+                search.end[used, 0], search.end[used, 1] = i, j
+                length = push_pair(tree, view, search, used, length, 0.0)
+                used += 1
     low = high = 0.0
-    components = count
     while components > 1:
-        pair = order[0]
+        pair = search.order[0]
         length -= 1
-        order[0] = order[length]
-        sift_down(order, key, length)
-        i, j = ends[pair, 0], ends[pair, 1]
+        search.order[0] = search.order[length]
+        sift_down(search.order, search.key, length)
+        i, j = search.end[pair, 0], search.end[pair, 1]
         if labels[i] == labels[j]:
             continue
-        apart = distance(first[pair], second[pair])
-        room = first[pair, 6] + second[pair, 6]
-        bound = max(apart - room, 0.0)
-        if ends[pair, 2] == 0:
-            bound = max(bound, polygon_distance(first[pair], second[pair], corners, np.inf))
-            ends[pair, 2] = 1
-            if bound + TIE * room > key[pair]:
-                key[pair] = bound + TIE * room
-                order[length] = pair
+        large, small = search.word[pair, 0], search.word[pair, 1]
+        if word[large, NORM] < word[small, NORM]:
+            large, small = small, large
+        large_x, large_y = center(tree, large, view)
+        small_x, small_y = center(tree, small, view)
+        apart_x, apart_y = small_x - large_x, small_y - large_y
+        tie = TIE * view.radius * (word[large, NORM] + word[small, NORM])
+        if not search.tried[pair]:
+            search.tried[pair] = True
+            bound = polygon_distance(word, large, small, apart_x, apart_y, corners, np.inf, POLYGON_STEPS)
+            if bound + tie > search.key[pair]:
+                search.key[pair] = bound + tie
+                search.order[length] = pair
                 length += 1
-                sift_up(order, key, length - 1)
+                sift_up(search.order, search.key, length - 1)
                 continue
-        bound = max(bound, key[pair] - TIE * room)
-        if room <= max(tolerance, PRECISION * apart) or used + count > first.shape[0]:
+        bound = max(0.0, search.key[pair] - tie)
+        most = points_distance(word, large, small, apart_x, apart_y, points)
+        known = most - bound <= max(tolerance * view.radius, PRECISION * most)
+        child = -1 if known or used + count > search.key.shape[0] else children(tree, count, large)
+        if child < 0:
             join(labels, i, j)
             components -= 1
-            low, high = max(low, bound - SLACK), max(high, apart + room)
+            low, high = max(low, bound - view.slack), max(high, most)
             continue
-        one[:] = first[pair]
-        other[:] = second[pair]
-        for k in range(count):
+        for k in range(child, child + count):
             # The first part takes the place of the whole.
-            at = pair if k == 0 else used
-            used += k > 0
-            first[at], second[at] = one, other
-            if one[6] >= other[6]:
-                set_child(linear, unit, k, one, first[at])
-            else:
-                set_child(linear, unit, k, other, second[at])
-            ends[at, 0], ends[at, 1] = i, j
-            length = push_pair(first, second, ends, key, order, at, length, bound)
+            at = pair if k == child else used
+            used += k > child
+            search.word[at, 0], search.word[at, 1] = k, small
+            search.end[at, 0], search.end[at, 1] = i, j
+            length = push_pair(tree, view, search, at, length, bound)
     return low, high
 
 
 @njit(nogil=True, cache=True)
-def push_pair(first, second, ends, key, order, pair, length, at_least):
-    """Put a pair of pieces into the heap of `measure_gap`, by its discs; the heap's new length.
+def push_pair(tree, view, search, pair, length, at_least):
+    """Put a pair of pieces into the heap, by its discs; the heap's new length.
 
     Among pairs that may meet the small ones come first: else all large ones would be split before any is decided.
     """
-    room = first[pair, 6] + second[pair, 6]
-    key[pair] = max(distance(first[pair], second[pair]) - room, at_least) + TIE * room
-    ends[pair, 2] = 0
-    order[length] = pair
-    sift_up(order, key, length)
+    one, other = search.word[pair, 0], search.word[pair, 1]
+    one_x, one_y = center(tree, one, view)
+    other_x, other_y = center(tree, other, view)
+    reach = view.radius * (tree.word[one, NORM] + tree.word[other, NORM])
+    apart = math.sqrt((one_x - other_x) * (one_x - other_x) + (one_y - other_y) * (one_y - other_y))
+    search.key[pair] = max(apart - reach, at_least) + TIE * reach
+    search.tried[pair] = False
+    search.order[length] = pair
+    sift_up(search.order, search.key, length)
     return length + 1
+
+
+@njit(nogil=True, cache=True)
+def points_distance(word, one, other, apart_x, apart_y, points):
+    """Upper bound of the distance of two pieces: from one point of each, those that reach furthest to the other."""
+    a, b, c, d = word[one, A], word[one, B], word[one, C], word[one, D]
+    p, q, r, s = word[other, A], word[other, B], word[other, C], word[other, D]
+    at_one, _ = furthest(points, a * apart_x + c * apart_y, b * apart_x + d * apart_y)
+    at_other, _ = furthest(points, -p * apart_x - r * apart_y, -q * apart_x - s * apart_y)
+    x = apart_x + p * points[at_other, 0] + q * points[at_other, 1] - a * points[at_one, 0] - b * points[at_one, 1]
+    y = apart_y + r * points[at_other, 0] + s * points[at_other, 1] - c * points[at_one, 0] - d * points[at_one, 1]
+    return math.sqrt(x * x + y * y)

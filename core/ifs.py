@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from .affine import determinant, singular_values, spectral_radius
-from .enclosure import enclosing_disc, outer_polygon, shrinking_words
+from .enclosure import enclosing_disc, shrinking_words
+from .polygon import outer_polygon
 
 WEIGHT_FLOOR = 0.01
 """Least default weight of a map as a share of all areas, so that a flat map is drawn too."""

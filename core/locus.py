@@ -34,7 +34,7 @@ PATH_COLOR = (0.95, 0.25, 0.1)
 
 MAX_NODES = 4096
 
-ROWS = 64
+ROWS = 128
 """Nodes of a column in one chunk of work."""
 
 
@@ -148,14 +148,14 @@ def compute_locus_steps(
         raise ValueError(f"The tolerance is {tolerance:g}; it must be above 0.")
     u, v = nodes(resolution, domain)
     linear = morph.linear(u[:, None]).reshape(len(u), -1, 4)
-    translations = np.ascontiguousarray(morph.translation(v[:, None]))
+    start, end = morph.translation(0.0), morph.translation(1.0)
     state = np.empty((len(v), len(u)), dtype=np.uint8)
     low = np.empty((len(v), len(u)), dtype=np.float32)
 
     def fill(chunk: tuple[int, int]) -> None:
         column, first = chunk
         rows = slice(first, first + ROWS)
-        states, gaps, _ = decide_column(linear[column], translations[rows], float(tolerance), gap)
+        states, gaps, _ = decide_column(linear[column], start, end - start, v[rows], float(tolerance), gap)
         state[rows, column], low[rows, column] = states, gaps[:, 0]
 
     chunks = [(column, first) for column in range(len(u)) for first in range(0, len(v), ROWS)]

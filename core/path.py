@@ -16,7 +16,7 @@ import numpy as np
 from . import parallel
 from .connectedness import Connectedness
 from .curve import Keys, smooth_keys
-from .decision import is_connected
+from .decision import are_connected
 from .locus import Locus, compute_locus_steps, nodes
 from .morph import Morph
 from .report import PathReport, check_frames_steps, family
@@ -238,7 +238,7 @@ def _failing_edges(morph: Morph, points: np.ndarray, tolerance: float, samples: 
 def _connected(morph: Morph, uv: np.ndarray, tolerance: float) -> np.ndarray:
     """Whether the shape is connected at each of uv (F, 2), without swell."""
     linear, translation = family(morph, np.column_stack([uv, np.zeros(len(uv))]))
-    return np.array([is_connected(linear[k], translation[k], tolerance) for k in range(len(uv))], dtype=bool)
+    return are_connected(linear, translation, tolerance)
 
 
 def _simplified_steps(

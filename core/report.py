@@ -9,7 +9,7 @@ import numpy as np
 
 from . import parallel
 from .connectedness import Connectedness
-from .decision import decide_column
+from .decision import decide_frames
 from .morph import Morph
 
 CHUNK = 16
@@ -150,9 +150,8 @@ def check_frames_steps(
     linear, translation = family(morph, uv_swell)
 
     def check(start: int) -> tuple[np.ndarray, np.ndarray]:
-        frames = range(start, min(start + CHUNK, len(uv_swell)))
-        found = [decide_column(linear[k], translation[k : k + 1], float(tolerance), True)[:2] for k in frames]
-        return np.concatenate([state for state, _ in found]), np.concatenate([gap for _, gap in found])
+        frames = slice(start, start + CHUNK)
+        return decide_frames(linear[frames], translation[frames], float(tolerance), True)[:2]
 
     chunks = yield from parallel.steps(check, range(0, len(uv_swell), CHUNK), threads)
     state = np.concatenate([chunk[0] for chunk in chunks])

@@ -16,6 +16,8 @@ CORE = (
     "kernels",
     "affine",
     "enclosure",
+    "tree",
+    "polygon",
     "ifs",
     "shapes",
     "morph",

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core import enclosure
-from core.enclosure import cover, enclosing_disc, outer_polygon, shrinking_words
+from core.enclosure import cover, enclosing_disc, shrinking_words
 from core.shapes import SHAPES
 from tests.core import reference
 
@@ -90,41 +90,3 @@ def test_the_tight_cover_is_taken_where_it_is_short():
     assert shrinking_words(rows(SHAPES["gasket"])[0])[-1] == enclosure.TIGHT_NORM
     slow = np.array([[0.95, 0, 0, 0.95], [0, -0.95, 0.95, 0], [0.95, 0, 0, -0.95]])
     assert shrinking_words(slow)[-1] == enclosure.CONTRACTIVE_NORM
-
-
-@pytest.mark.parametrize("name", SHAPES)
-@pytest.mark.parametrize("directions", [4, 16, 64])
-def test_the_outer_polygon_holds_the_attractor_and_touches_it(name, directions):
-    ifs = SHAPES[name]
-    center, radius = ifs.enclosing_disc
-    linear, _ = rows(ifs)
-    translation = np.ascontiguousarray(ifs.translation + ifs.linear @ center - center)
-    reach, corners = outer_polygon(linear, translation, radius, directions, 1e-9 * radius)
-    angles = 2 * np.pi * np.arange(directions) / directions
-    normals = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-    points, _, spacing = reference.dense(ifs.maps)
-    along = (points - center) @ normals.T
-    assert (along <= reach + 1e-12 * radius).all()
-    # Between neighbouring normals lie the corners.
-    assert (corners * normals).sum(axis=1) == pytest.approx(reach, abs=1e-12 * radius)
-    assert (corners * np.roll(normals, -1, axis=0)).sum(axis=1) == pytest.approx(np.roll(reach, -1), abs=1e-12 * radius)
-    if directions == 64:
-        assert (reach - along.max(axis=0)).max() <= spacing + 0.08 * radius
-
-
-@given(seeds)
-@settings(max_examples=40)
-def test_the_outer_polygon_is_an_enclosure_at_every_step(seed):
-    random = np.random.default_rng(seed)
-    linear = random.normal(size=(3, 2, 2))
-    linear *= (random.uniform(0.2, 0.85, 3) / np.linalg.norm(linear, 2, axis=(1, 2)))[:, None, None]
-    maps = np.concatenate([linear, random.normal(size=(3, 2, 1))], axis=-1)
-    points, _, _ = reference.dense(maps, 2000)
-    radius = np.linalg.norm(points, axis=1).max() * 1.01
-    # Such a disc holds the attractor although some maps lead out of it.
-    for tolerance in (1.0, 0.1, 1e-4):
-        reach, _ = outer_polygon(
-            linear.reshape(-1, 4), np.ascontiguousarray(maps[:, :, 2]), radius, 16, tolerance * radius
-        )
-        angles = 2 * np.pi * np.arange(16) / 16
-        assert (points @ np.stack([np.cos(angles), np.sin(angles)]) <= reach + 1e-12 * radius).all()

@@ -7,105 +7,25 @@ from hypothesis import strategies as st
 
 from core import decision, overlap
 from core.connectedness import connectedness
-from core.decision import decide_column
-from core.enclosure import outer_polygon
+from core.decision import decide_column, decide_frames
 from core.heap import sift_down, sift_up
 from core.ifs import IFS
-from core.overlap import (
-    APART,
-    MEET,
-    UNKNOWN,
-    normalize,
-    pair_test,
-    polygon_distance,
-    set_child,
-    set_piece,
-    surely_one_piece,
-)
+from core.overlap import APART, MEET, UNKNOWN, pair_test, surely_one_piece
+from core.polygon import outer_polygon
 from core.shapes import SHAPES
+from core.tree import View, empty_tree, plant
+from tests.core.random_maps import random_ifs, unit_maps
 from tests.core.reference import at, cover, dense
 
 seeds = st.integers(0, 2**32 - 1)
 
 
-def unit_maps(ifs):
-    """Rows of the linear parts, and the translations that put the enclosing disc at the origin with radius 1."""
-    linear = np.ascontiguousarray(ifs.linear).reshape(-1, 4)
-    center, radius = ifs.enclosing_disc
-    unit = np.empty((ifs.count, 2))
-    normalize(linear, np.ascontiguousarray(ifs.translation), *center, radius, unit)
-    return linear, unit
-
-
-def together(linear, unit):
-    return np.concatenate([linear.reshape(-1, 2, 2), unit[..., None]], axis=-1)
-
-
-def random_ifs(seed, count=3, low=0.1, high=0.75):
-    random = np.random.default_rng(seed)
-    linear = random.normal(size=(count, 2, 2))
-    linear *= (random.uniform(low, high, count) / np.linalg.norm(linear, 2, axis=(1, 2)))[:, None, None]
-    return IFS(np.concatenate([linear, random.normal(size=(count, 2, 1))], axis=-1))
-
-
-@given(seeds)
-def test_normalized_maps_have_the_same_attractor_in_the_unit_disc(seed):
-    ifs = random_ifs(seed)
-    points, _, _ = dense(together(*unit_maps(ifs)), 1000)
-    center, radius = ifs.enclosing_disc
-    assert np.linalg.norm(points, axis=1).max() <= 1 + 1e-9
-    assert points * radius + center == pytest.approx(dense(ifs.maps, 1000)[0], abs=1e-9 * radius)
-
-
-@given(seeds, st.lists(st.integers(0, 2), min_size=1, max_size=8))
-def test_pieces_are_the_images_under_words(seed, word):
-    linear, unit = unit_maps(random_ifs(seed))
-    piece, child = np.empty(7), np.empty(7)
-    set_piece(linear, unit, word[0], piece)
-    for letter in word[1:]:
-        set_child(linear, unit, letter, piece, child)
-        piece[:] = child
-    composed = np.eye(3)
-    for letter in word:
-        composed = composed @ np.vstack([together(linear, unit)[letter], [0, 0, 1]])
-    assert piece[:4].reshape(2, 2) == pytest.approx(composed[:2, :2], abs=1e-14)
-    assert piece[4:6] == pytest.approx(composed[:2, 2], abs=1e-13)
-    assert piece[6] == pytest.approx(np.linalg.norm(composed[:2, :2], 2), abs=1e-14)
-
-
-@given(seeds)
-@settings(max_examples=60)
-def test_polygons_are_never_further_apart_than_their_points(seed):
-    random = np.random.default_rng(seed)
-    linear, unit = unit_maps(random_ifs(seed))
-    _, corners = outer_polygon(linear, unit, 1.0, 16, 1e-3)
-    points, _, _ = dense(together(linear, unit), 400)
-    words = []
-    for _ in range(2):
-        length = random.integers(1, 4)
-        piece, child = np.empty(7), np.empty(7)
-        set_piece(linear, unit, random.integers(3), piece)
-        for _ in range(length):
-            set_child(linear, unit, random.integers(3), piece, child)
-            piece[:] = child
-        words.append(piece)
-    one, other = (points @ word[:4].reshape(2, 2).T + word[4:6] for word in words)
-    nearest = np.linalg.norm(one[:, None] - other[None], axis=-1).min()
-    assert polygon_distance(*words, corners, np.inf) <= nearest + 1e-12
-    # Stopping early may only give a lower bound that is enough.
-    early = polygon_distance(*words, corners, 0.0)
-    assert early <= nearest + 1e-12
-    assert (early > 0) == (polygon_distance(*words, corners, np.inf) > 0)
-
-
-@pytest.mark.parametrize("shift", [0.5, 1.999, 2.001, 3.0])
-def test_polygons_of_two_squares(shift):
-    corners = np.array([[1.0, 1], [-1, 1], [-1, -1], [1, -1]])
-    one = np.array([1.0, 0, 0, 1, 0, 0, 1])
-    other = np.array([1.0, 0, 0, 1, shift, 0, 1])
-    found = polygon_distance(one, other, corners, np.inf)
-    assert found <= max(shift - 2, 0) + 1e-12
-    assert (found > 0) == (shift > 2)
+def outcome_of(linear, unit, i, j, tolerance, corners, budget=4000, stack=decision.STACK, capacity=10_000):
+    tree = empty_tree(capacity)
+    plant(tree, linear, unit, np.zeros_like(unit))
+    room = np.empty(stack, np.int32), np.empty(stack, np.int32), np.empty(stack)
+    view = View(0.0, 0.0, 0.0, 1.0, 1e-12)
+    return pair_test(tree, len(linear), view, i, j, tolerance, corners, budget, *room)
 
 
 @pytest.mark.parametrize("with_polygons", [False, True])
@@ -113,29 +33,27 @@ def test_polygons_of_two_squares(shift):
 @settings(max_examples=50)
 def test_a_pair_called_apart_is_apart_and_one_called_meeting_is_near(with_polygons, seed):
     linear, unit = unit_maps(random_ifs(seed))
-    points, letters, spacing = dense(together(linear, unit), 1500)
+    points, letters, spacing = dense(np.concatenate([linear.reshape(-1, 2, 2), unit[..., None]], axis=-1), 1500)
     corners = outer_polygon(linear, unit, 1.0, 16, 1e-3)[1] if with_polygons else np.empty((0, 2))
-    first, second, key = np.empty((decision.STACK, 7)), np.empty((decision.STACK, 7)), np.empty(decision.STACK)
     tolerance = 0.01
     for i, j in ((0, 1), (0, 2), (1, 2)):
-        outcome = pair_test(linear, unit, i, j, tolerance, corners, 4000, first, second, key)
+        outcome = outcome_of(linear, unit, i, j, tolerance, corners)
         apart = np.linalg.norm(points[letters == i][:, None] - points[letters == j][None], axis=-1).min()
         if outcome == APART:
             assert apart > 1e-13
         if outcome == MEET:
             assert apart - 2 * spacing <= 2 * tolerance
-        reverse = pair_test(linear, unit, j, i, tolerance, corners, 4000, first, second, key)
+        reverse = outcome_of(linear, unit, j, i, tolerance, corners)
         assert {outcome, reverse} != {MEET, APART} or apart <= 2 * tolerance + 2 * spacing
 
 
-def test_a_pair_test_gives_up_at_its_budget():
+def test_a_pair_test_gives_up_at_its_budget_and_where_there_is_no_room():
     linear, unit = unit_maps(SHAPES["Lévy curve"])
-    first, second, key = np.empty((decision.STACK, 7)), np.empty((decision.STACK, 7)), np.empty(decision.STACK)
-    assert pair_test(linear, unit, 0, 1, 1e-12, np.empty((0, 2)), 3, first, second, key) == UNKNOWN
-    assert pair_test(linear, unit, 0, 1, 1e-12, np.empty((0, 2)), 4000, first[:4], second[:4], key[:4]) in (
-        UNKNOWN,
-        MEET,
-    )
+    none = np.empty((0, 2))
+    assert outcome_of(linear, unit, 0, 1, 1e-12, none) == MEET
+    assert outcome_of(linear, unit, 0, 1, 1e-12, none, budget=3) == UNKNOWN
+    assert outcome_of(linear, unit, 0, 1, 1e-12, none, stack=4) == UNKNOWN
+    assert outcome_of(linear, unit, 0, 1, 1e-12, none, capacity=20) == UNKNOWN
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=6), st.randoms(use_true_random=False))
@@ -175,18 +93,36 @@ def test_the_heap_gives_the_least_first(values):
 def test_a_column_is_its_nodes_one_by_one(with_gap):
     linear = np.ascontiguousarray(random_ifs(12, 4, 0.3, 0.9).linear).reshape(-1, 4)
     random = np.random.default_rng(4)
-    translations = random.normal(size=(30, 4, 2))
-    state, gap, labels = decide_column(linear, translations, 1 / 300, with_gap)
+    start, drift = random.normal(size=(2, 4, 2))
+    along = np.linspace(-2, 2, 40)
+    state, gap, labels = decide_column(linear, start, drift, along, 1 / 300, with_gap)
     assert len(np.unique(state)) > 1
-    for k in range(30):
-        ifs = IFS(np.concatenate([linear.reshape(-1, 2, 2), translations[k, ..., None]], axis=-1))
-        verdict = connectedness(ifs)
+    translations = start + along[:, None, None] * drift
+    frames = decide_frames(np.tile(linear, (40, 1, 1)), translations, 1 / 300, with_gap)
+    assert np.array_equal(frames[0], state)
+    assert np.array_equal(frames[2], labels)
+    assert frames[1] == pytest.approx(gap, abs=1e-9, nan_ok=True)
+    for k in range(0, 40, 3):
+        verdict = connectedness(IFS(np.concatenate([linear.reshape(-1, 2, 2), translations[k, ..., None]], axis=-1)))
         assert verdict.state == state[k]
         assert np.array_equal(verdict.components, labels[k])
         if with_gap:
-            assert verdict.gap == tuple(gap[k])
+            assert verdict.gap == pytest.approx(tuple(gap[k]), abs=1e-9)
         elif state[k] == decision.DISCONNECTED:
             assert np.isnan(gap[k]).all()
+
+
+@given(seeds, st.floats(-12, 12))
+@settings(max_examples=30)
+def test_a_shape_far_away_gets_the_same_verdict(seed, exponent):
+    ifs = random_ifs(seed)
+    away = np.random.default_rng(seed).normal(size=2) * 10**exponent
+    moved = IFS(np.concatenate([ifs.linear, (ifs.translation + away - ifs.linear @ away)[..., None]], axis=-1))
+    here, there = connectedness(ifs), connectedness(moved)
+    if exponent < 6 or (here.gap[0] > 0.1 and exponent < 11):
+        assert here.state == there.state
+    # Far away all that is known for certain must still be true.
+    assert there.state != decision.DISCONNECTED or here.gap[1] > 0
 
 
 @given(seeds, st.sampled_from([1 / 30, 1 / 300, 1e-6]))
