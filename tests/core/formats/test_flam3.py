@@ -132,4 +132,4 @@ def test_what_is_written_is_drawn_as_it_was(draw):
     assert columns[0] > 5
     assert columns[-1] < 635
     lower, upper = np.array_split((brightness > 0).sum(axis=1)[rows[0] : rows[-1]], 2)
-    assert lower.sum() > 1.5 * upper.sum(), "the tip points up"
+    assert lower.sum() > 1.2 * upper.sum(), "the tip points up"

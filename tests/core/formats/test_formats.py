@@ -180,8 +180,8 @@ def test_files_that_cannot_be_written(tmp_path):
 
 SAMPLES = [FERN, FERN_IN_SPACE, APOPHYSIS.replace("00FF00" * 254, ""), FLAM3, FRACTORIUM, JWILDFIRE]
 WORDS = (
-    "<flame |<xform |</flame>|<finalxform |<symmetry kind='|<layer>|<palette>|\"|'|/>|>|coefs=|weight=|linear=|var1=|chaos=|"
-    "1e308 |-1 |0 |NaN|{|}|;|(3D)|\n|<!--|-->|99999999999999999999|1e99 1e99 1e99 1e99 1e99 1e99|&#0;|&#x110000;|\x1a|\x00|é"
+    "<flame |<xform |</flame>|<finalxform |<symmetry kind='|<layer>|\"|'|/>|>|coefs=|weight=|linear=|var1=|chaos=|"
+    "1e308 |-1 |0 |NaN|{|}|;|(3D)|\n|<!--|-->|99999999999999|1e99 1e99 1e99 1e99 1 1|&#0;|&#x110000;|\x1a|\x00|é"
 )
 PIECES = st.sampled_from(WORDS.split("|"))
 
