@@ -44,7 +44,7 @@ class Points:
 
     Attributes
     ----------
-    position : (count, 2) float32
+    position : (count, 2) or (count, 3) float32
     attractorlet : (count,) int32
         First letter of the address, the index of the map that the point's attractorlet is the image by.
     radius : (count,) float32
@@ -56,7 +56,13 @@ class Points:
     radius: np.ndarray
 
 
-def point_cloud(ifs: IFS, count: int, address_weights: np.ndarray | None = None, threads: int | None = None) -> Points:
+def point_cloud(
+    ifs: IFS,
+    count: int,
+    address_weights: np.ndarray | None = None,
+    threads: int | None = None,
+    placing: tuple[float, float, float] | None = None,
+) -> Points:
     """Points of an attractor, spread by the weights.
 
     Parameters
@@ -68,6 +74,9 @@ def point_cloud(ifs: IFS, count: int, address_weights: np.ndarray | None = None,
         points keep their addresses.
     threads : int, optional
         By default one for each processor. The result is the same to the byte.
+    placing : (x, y, unit), optional
+        Put the points into a space of three dimensions, with its origin at a place of the plane and the length 1 for so
+        many units of the plane. Positions and radii are in that space, and the third coordinate is zero.
 
     Raises
     ------
@@ -83,17 +92,22 @@ def point_cloud(ifs: IFS, count: int, address_weights: np.ndarray | None = None,
     if weights.shape != (ifs.count,) or not (np.isfinite(weights).all() and (weights >= 0).all() and weights.sum() > 0):
         raise ValueError(f"Address weights must be {ifs.count} numbers, none negative and one positive.")
     maps, center, radius = unit_maps(ifs, least_radius=1e-30)
-    points = Points(np.empty((count, 2), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
+    dimensions = 2
+    if placing is not None:
+        x, y, unit = placing
+        center, radius, dimensions = (center - (x, y)) / unit, radius / unit, 3
+    points = Points(np.empty((count, dimensions), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
     borders = cumulated(weights)
     words = share_out(maps, borders, count)
     # Every point is the image of one point of the attractor: the fixed point of the map with the most weight.
     seed = fixed_point(maps[np.argmax(weights)])
     start, small = small_clouds(maps, np.ascontiguousarray(ifs.norms), borders, seed, words)
-    bounds = np.array(RADIUS_RANGE) * radius / math.sqrt(max(count, 1))
+    small = [np.ascontiguousarray(column) for column in small.T]
+    bounds = np.float32(RADIUS_RANGE) * np.float32(radius / math.sqrt(max(count, 1)))
+    found = points.position.reshape(-1), points.attractorlet, points.radius
 
     def chunk(rows: tuple[int, int]) -> None:
-        found = points.position, points.attractorlet, points.radius
-        place(words[slice(*rows)], start, small, center, radius, bounds, *found)
+        place(words[slice(*rows)], start, *small, center, radius, bounds, dimensions, *found)
 
     chunks = min(parallel.thread_count(threads), 1 + count // CHUNK)
     parallel.run(chunk, list(pairwise(np.linspace(0, len(words), chunks + 1).astype(int))), threads)
@@ -210,16 +224,26 @@ def _decode(maps, norms, borders, seed, count, points, stack):
 
 
 @njit(nogil=True, cache=True)
-def place(words, start, small, center, radius, bounds, position, attractorlet, radii):
-    """Put the small clouds under the words."""
+def place(words, start, x, y, size, center, radius, bounds, dimensions, position, attractorlet, radii):
+    """Put the small clouds under the words; `position` is flat, with two or three `dimensions` for each point."""
     for w in range(words.shape[0]):
         a, b, e = radius * words[w, 0], radius * words[w, 1], radius * words[w, 2] + center[0]
         c, d, f = radius * words[w, 3], radius * words[w, 4], radius * words[w, 5] + center[1]
         first, count, letter = int(words[w, FIRST]), int(words[w, COUNT]), np.int32(words[w, LETTER])
-        size, begin = norm(a, b, c, d), start[count]
+        begin = start[count]
+        last, end = first + count, begin + count
+        px, py = x[begin:end], y[begin:end]
+        spot = position[first * dimensions : last * dimensions]
+        if dimensions == 2:
+            for k in range(count):
+                spot[2 * k], spot[2 * k + 1] = a * px[k] + b * py[k] + e, c * px[k] + d * py[k] + f
+        else:
+            for k in range(count):
+                spot[3 * k], spot[3 * k + 1] = a * px[k] + b * py[k] + e, c * px[k] + d * py[k] + f
+                spot[3 * k + 2] = 0
+        letters = attractorlet[first:last]
         for k in range(count):
-            x, y = small[begin + k, 0], small[begin + k, 1]
-            position[first + k, 0] = a * x + b * y + e
-            position[first + k, 1] = c * x + d * y + f
-            attractorlet[first + k] = letter
-            radii[first + k] = min(max(size * small[begin + k, 2], bounds[0]), bounds[1])
+            letters[k] = letter
+        scale, sizes, reach = norm(a, b, c, d), size[begin:end], radii[first:last]
+        for k in range(count):
+            reach[k] = min(max(np.float32(scale * sizes[k]), bounds[0]), bounds[1])

@@ -104,23 +104,26 @@ def _draw(owner, evaluated, output, for_render) -> None:
     settings = evaluated.ifs_morph
     target = output.target(owner)
     if target is None:
+        # Somebody edits it, or took it away: what it shows when it is back is not known.
+        _shown.pop(owner.data.session_uid, None)
         return
+
+    def show(morph, frame) -> None:
+        signature, before = output.signature(owner, settings, morph, frame), _shown.get(target.session_uid)
+        if before != signature:
+            shown = output.draw(owner, settings, morph, frame, for_render, before or ())
+            _shown[shown.session_uid] = signature
+
     try:
         morph = morph_of(settings)
         frame = morph.at(*settings.uv, settings.swell)
         frame.require_attractor()
-        signature = output.signature(owner, settings, morph, frame)
-        if _shown.get(target.session_uid) != signature:
-            target = output.draw(owner, settings, morph, frame, for_render)
-            _shown[target.session_uid] = signature
+        show(morph, frame)
         _tell(owner, "")
     except (IFSError, ValueError, MemoryError) as error:
         # No attractor at this frame, or settings that cannot be used: an empty picture, and the reason.
         _tell(owner, str(error) or "There is not enough memory for it; lower its resolution or its points.")
-        signature = output.signature(owner, settings, None, None)
-        if _shown.get(target.session_uid) != signature:
-            target = output.draw(owner, settings, None, None, for_render)
-            _shown[target.session_uid] = signature
+        show(None, None)
 
 
 def _tell(owner, reason: str) -> None:

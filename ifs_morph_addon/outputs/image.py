@@ -95,8 +95,8 @@ def signature(owner, settings, morph, frame) -> tuple:
     return canvas + shape + look + tones
 
 
-def draw(owner, settings, morph, frame, for_render: bool):
-    """Render the attractor, or none, into the image; the image that shows it."""
+def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
+    """Render the attractor, or none, into the image, whatever it showed before; the image that shows it."""
     output = settings.output
     pixels = _picture(owner, settings, morph, frame)
     image = _image_for(owner, for_render)

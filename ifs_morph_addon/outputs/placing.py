@@ -13,9 +13,14 @@ def unit(window) -> float:
     return length if length > 0 else 1.0
 
 
+def middle(window) -> tuple[float, float]:
+    """Place in the plane of the attractor that is the object's origin."""
+    left, bottom, right, top = window
+    return (left + right) / 2, (bottom + top) / 2
+
+
 def in_object(points: np.ndarray, window) -> np.ndarray:
     """Points (P, 2) of the plane of the attractor in the object's space, float32 (P, 3)."""
-    left, bottom, right, top = window
     placed = np.zeros((len(points), 3), dtype=np.float32)
-    placed[:, :2] = (points - np.float32([(left + right) / 2, (bottom + top) / 2])) / np.float32(unit(window))
+    placed[:, :2] = (points - np.float32(middle(window))) / np.float32(unit(window))
     return placed

@@ -10,7 +10,7 @@ from ...core.cloud import point_cloud
 from ...core.ifs import IFSError
 from ..conversion import frame_colors
 from . import materials
-from .placing import in_object, unit
+from .placing import middle, unit
 
 OWN_DATA = ("nodes", "material")
 """Datablocks of the output settings that no two objects may share; their mesh is one more."""
@@ -115,16 +115,16 @@ def target(owner):
 
 
 def signature(owner, settings, morph, frame) -> tuple:
-    """All that the points depend on."""
+    """All that the points depend on; last what their letters and colors depend on, which most frames leave alone."""
     if frame is None:
         return ()
     output = settings.output
-    shape = frame.maps.tobytes(), morph.weights_at(0.5).tobytes(), tuple(output.window)
-    return (*shape, output.point_count, output.point_radius, _colors(settings).tobytes())
+    still = output.point_count, morph.weights_at(0.5).tobytes(), _colors(settings).tobytes()
+    return frame.maps.tobytes(), tuple(output.window), output.point_radius, still
 
 
-def draw(owner, settings, morph, frame, for_render: bool):
-    """Put the points of the attractor, or none, into the mesh; the mesh."""
+def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
+    """Put the points of the attractor, or none, into the mesh, which shows what has the signature `before`; the mesh."""
     mesh = owner.data
     if frame is None:
         mesh.clear_geometry()
@@ -133,29 +133,40 @@ def draw(owner, settings, morph, frame, for_render: bool):
     output = settings.output
     if not np.isfinite(output.window).all():
         raise IFSError("The window holds NaN; fit it again, or give it four numbers.")
-    points = point_cloud(frame, output.point_count, address_weights=morph.weights_at(0.5))
+    weights, window = morph.weights_at(0.5), output.window
+    points = point_cloud(frame, output.point_count, weights, placing=(*middle(window), unit(window)))
     count = len(points.position)
     if len(mesh.vertices) != count or len(mesh.edges):
         mesh.clear_geometry()
         mesh.vertices.add(count)
-    _set(mesh, "position", in_object(points.position, output.window))
-    _set(mesh, "attractorlet", points.attractorlet)
-    _set(mesh, "radius", points.radius * np.float32(output.point_radius / unit(output.window)))
-    _set(mesh, "color", _colors(settings)[points.attractorlet])
+        before = ()
+    _set(mesh, "position", points.position)
+    _set(mesh, "radius", points.radius * np.float32(output.point_radius))
+    if before[-1:] != signature(owner, settings, morph, frame)[-1:] or not _has(mesh, "attractorlet", "color"):
+        _set(mesh, "attractorlet", points.attractorlet)
+        _set(mesh, "color", _colors(settings)[points.attractorlet])
     # Bounds are found anew and the object is evaluated again.
     mesh.update()
     mesh.update_tag()
     return mesh
 
 
+def _has(mesh, *names) -> bool:
+    """Whether a mesh has attributes as `ATTRIBUTES` says."""
+    attributes = [mesh.attributes.get(name) for name in names]
+    return all(
+        attribute is not None and (attribute.data_type, attribute.domain) == (ATTRIBUTES[name][0], "POINT")
+        for name, attribute in zip(names, attributes, strict=True)
+    )
+
+
 def _set(mesh, name, values) -> None:
     data_type, field = ATTRIBUTES[name]
-    attribute = mesh.attributes.get(name)
-    if attribute is None or (attribute.data_type, attribute.domain) != (data_type, "POINT"):
-        if attribute is not None:
-            mesh.attributes.remove(attribute)
-        attribute = mesh.attributes.new(name, data_type, "POINT")
-    attribute.data.foreach_set(field, np.ascontiguousarray(values).ravel())
+    if not _has(mesh, name):
+        if name in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[name])
+        mesh.attributes.new(name, data_type, "POINT")
+    mesh.attributes[name].data.foreach_set(field, values.ravel())
 
 
 def _colors(settings) -> np.ndarray:
