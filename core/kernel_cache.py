@@ -32,9 +32,12 @@ class KernelCache(FunctionCache):
 
     def load_overload(self, signature, target_context):
         """The kept kernel, or None where there is none or it cannot be read."""
-        with suppress(OSError, EOFError, pickle.UnpicklingError):
+        try:
             return super().load_overload(signature, target_context)
-        return None
+        except (OSError, EOFError, pickle.UnpicklingError):
+            with suppress(OSError):
+                self.flush()
+            return None
 
     def save_overload(self, signature, data) -> None:
         """Keep a kernel; one that cannot be kept, on a full disk say, is compiled again the next time."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import platform
 import sys
+from collections.abc import Iterator
 from hashlib import sha256
 from importlib.metadata import distributions
 from pathlib import Path
@@ -17,6 +18,7 @@ import numpy as np
 from . import kernels
 from .cloud import point_cloud
 from .connectedness import connectedness
+from .enclosure import norm
 from .ifs import IFS
 from .kernels import Kernel
 from .locus import compute_locus
@@ -46,10 +48,17 @@ def run() -> None:
         calls()
 
 
+def load() -> Iterator[None]:
+    """Have the compiler and the first kernels ready, in steps of a few tenths of a second if kernels were kept."""
+    _ = norm.dispatcher
+    yield
+    SHAPES["gasket"].require_attractor()
+    yield
+    _shapes()
+
+
 def _shapes() -> None:
-    shape = SHAPES["gasket"]
-    shape.require_attractor()
-    fit_window(shape, SIZE)
+    fit_window(SHAPES["gasket"], SIZE)
 
 
 def _pictures() -> None:

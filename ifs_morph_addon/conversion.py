@@ -183,7 +183,7 @@ def fit_window(owner) -> None:
         morph = morph_of(settings)
         shapes = [morph.at(*place) for place in path_samples(owner)]
         output.window = fitted_window(shapes, tuple(output.resolution))
-    except IFSError:
+    except (IFSError, ImportError):
         return  # The panel shows what is wrong; the last window will do until it is mended.
 
 
@@ -195,6 +195,6 @@ def shape_problem(settings) -> str:
         morph = morph_of(settings)
         morph.initial.require_attractor()
         morph.final.require_attractor()
-    except IFSError as error:
+    except (IFSError, ImportError) as error:  # A numba that does not fit its numpy cannot be imported.
         return str(error)
     return ""

@@ -48,22 +48,41 @@ class _Preparation:
     def __init__(self, folder: Path, when_over: Callable[[], None]):
         self.folder, self.when_over = folder, when_over
         self.since, self.share = time.time(), 0.0
+        self.loading = warm_up.load()
         self.output = tempfile.TemporaryFile()  # noqa: SIM115 -- closed in `close`
-        self.process = subprocess.Popen(
-            _command(),
-            env={**os.environ, "NUMBA_CACHE_DIR": str(folder)},
-            stdin=subprocess.DEVNULL,
-            stdout=self.output,
-            stderr=subprocess.STDOUT,
-            creationflags=_creation_flags(),
-        )
+        try:
+            self.process = subprocess.Popen(
+                _command(),
+                env={**os.environ, "NUMBA_CACHE_DIR": str(folder)},
+                stdin=subprocess.DEVNULL,
+                stdout=self.output,
+                stderr=subprocess.STDOUT,
+                creationflags=_creation_flags(),
+            )
+        except OSError:
+            self.output.close()
+            raise
 
     @property
     def elapsed(self) -> float:
         return time.time() - self.since
 
+    def goes_on(self) -> bool:
+        """Whether the process still works; says once what became of it if it failed."""
+        if self.output.closed:
+            return False
+        if self.process.poll() is None and self.elapsed < LONGEST:
+            return True
+        failed = self.process.poll() != 0
+        said = self.close()
+        if failed:
+            print(f"IFS Morph: could not prepare ahead, so its first use will take half a minute.\n{said}")
+        return False
+
     def close(self) -> str:
         """End the process if it still runs; what it said."""
+        if self.output.closed:
+            return ""
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
@@ -120,28 +139,29 @@ def start(folder: Path, when_over: Callable[[], None]) -> None:
 def look() -> float | None:
     """See how far the process is, and let the window show it; seconds until the next look."""
     preparation = _running[0]
-    code = preparation.process.poll()
-    if code is None and preparation.elapsed < LONGEST:
+    if preparation.goes_on():
         preparation.share = warm_up.share_done(preparation.folder, preparation.since)
         _show(message())
         return INTERVAL
-    _running.clear()
-    said = preparation.close()
-    if code != 0:
-        print(f"IFS Morph: could not prepare ahead, so its first use will take half a minute.\n{said}")
-    _show(None)
+    try:
+        next(preparation.loading)
+        return 0.0
+    except StopIteration:
+        pass
+    except ImportError as error:
+        print(f"IFS Morph: {error}")
+    end()
     preparation.when_over()
     return None
 
 
 def end() -> None:
-    """End the process, if it runs."""
+    """End the process, if it runs, and wait for nothing any more."""
     if bpy.app.timers.is_registered(look):
         bpy.app.timers.unregister(look)
     while _running:
         _running.pop().close()
         _show(None)
-    kernels.keep_in(None)
 
 
 def is_running() -> bool:
@@ -167,5 +187,6 @@ def _show(text: str | None) -> None:
     for window in bpy.context.window_manager.windows:
         window.workspace.status_text_set(text)
         for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+            for region in area.regions:
+                if (area.type, region.type) == ("VIEW_3D", "UI"):
+                    region.tag_redraw()
