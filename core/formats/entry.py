@@ -72,6 +72,11 @@ class Entry:
         return self.maps.shape[1]
 
     @property
+    def is_plain(self) -> bool:
+        """Whether the entry is an IFS of the plane whose maps follow each other freely."""
+        return self.dimension == 2 and self.transitions is None
+
+    @property
     def known_weights(self) -> np.ndarray:
         """The weights (N,), or where the file has none the areas or volumes of the maps, none too small."""
         if self.weights is not None:
@@ -117,8 +122,7 @@ class Reading:
     @property
     def shapes(self) -> dict[str, IFS]:
         """The entries that are plain IFSs of the plane, by name."""
-        plain = (entry for entry in self.entries if entry.dimension == 2 and entry.transitions is None)
-        return {entry.name: entry.ifs() for entry in plain}
+        return {entry.name: entry.ifs() for entry in self.entries if entry.is_plain}
 
 
 def reading(entries: Iterable[Entry], problems: Iterable[str]) -> Reading:

@@ -3,12 +3,20 @@
 from ..conversion import shape_problem
 
 
-def editable_morph(cls, context) -> bool:
-    """Whether the active object is a morph that may be changed."""
+def any_morph(cls, context) -> bool:
+    """Whether the active object is a morph, were it a linked one."""
     owner = context.object
     if owner is None or owner.ifs_morph.kind == "NONE":
         cls.poll_message_set("Select an IFS Morph object, or add one with Add > IFS Morph")
         return False
+    return True
+
+
+def editable_morph(cls, context) -> bool:
+    """Whether the active object is a morph that may be changed."""
+    if not any_morph(cls, context):
+        return False
+    owner = context.object
     if owner.library is not None or (owner.override_library and owner.override_library.is_system_override):
         cls.poll_message_set("The object is linked from a library; make it local or an editable library override first")
         return False

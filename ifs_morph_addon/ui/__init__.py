@@ -1,8 +1,8 @@
-"""The sidebar tab and the Add menu."""
+"""The sidebar tab, the Add menu and the File menu."""
 
-from . import lists, menus, panels
+from . import files, lists, menus, panels
 
-MODULES = (lists, menus, panels)
+MODULES = (lists, menus, panels, files)
 
 
 def register():

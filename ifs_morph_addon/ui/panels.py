@@ -6,6 +6,7 @@ import bpy
 
 from .. import fcurves, outputs, preparation
 from ..conversion import locus_fingerprint, path_fingerprint, shape_problem
+from .files import draw_file_buttons
 
 CHARACTER_WIDTH = 6.2
 """Mean width of a letter in the interface font at scale 1, in pixels, for breaking sentences into lines."""
@@ -71,7 +72,9 @@ class _ShapePanel(_Panel):
         layout = self.layout
         shape = getattr(context.object.ifs_morph, self.shape)
         end = self.shape.upper()
-        layout.menu(f"IFSMORPH_MT_library_{self.shape}", text=_title(shape.name) or "Library", icon="ASSET_MANAGER")
+        row = layout.row(align=True)
+        row.menu(f"IFSMORPH_MT_library_{self.shape}", text=_title(shape.name) or "Library", icon="ASSET_MANAGER")
+        draw_file_buttons(row, end)
 
         row = layout.row()
         row.template_list("IFSMORPH_UL_maps", self.shape, shape, "maps", shape, "active_index", rows=5)
