@@ -95,7 +95,10 @@ def _command() -> list[str]:
     python = sys.executable or ""
     if not Path(python).name.lower().startswith("python"):
         raise OSError(f"“{python}” is no Python")
+    # Python's own compiled modules belong where Blender has them, too.
     options = ["-I", "-B"] if sys.dont_write_bytecode else ["-I"]
+    if sys.pycache_prefix:
+        options += ["-X", f"pycache_prefix={sys.pycache_prefix}"]
     extension = str(Path(warm_up.__file__).parents[1])
     return [python, *options, "-c", SCRIPT, base_package, extension, *filter(None, sys.path)]
 
