@@ -123,7 +123,7 @@ class IFSMORPH_OT_import_shapes(_Choice, ImportHelper, bpy.types.Operator):
 
     bl_idname = "ifs_morph.import_shapes"
     bl_label = "Import Shape"
-    bl_options = {"REGISTER", "UNDO", "PRESET"}
+    bl_options = {"REGISTER", "UNDO"}
 
     filename_ext = ".ifs"
     filter_glob: bpy.props.StringProperty(default=FILTER, options={"HIDDEN"})
@@ -295,7 +295,7 @@ class IFSMORPH_OT_export_shapes(ExportHelper, bpy.types.Operator):
 
     bl_idname = "ifs_morph.export_shapes"
     bl_label = "Export Shapes"
-    bl_options = {"REGISTER", "PRESET"}
+    bl_options = {"REGISTER"}
 
     filename_ext = ".ifs"
     filter_glob: bpy.props.StringProperty(default=FILTER, options={"HIDDEN"})
