@@ -27,7 +27,10 @@ def clearance(inside):
         0 outside; infinite everywhere if no node is outside.
     """
     rows, columns = inside.shape
-    far = np.where(inside, np.inf, 0.0)
+    far = np.empty((rows, columns))
+    for row in range(rows):
+        for column in range(columns):
+            far[row, column] = np.inf if inside[row, column] else 0.0
     for sweep in range(2):
         for at in range(rows * columns):
             place = at if sweep == 0 else rows * columns - 1 - at
