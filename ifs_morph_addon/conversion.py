@@ -51,7 +51,8 @@ def frame_colors(settings) -> np.ndarray:
     start, end = shape_colors(settings.initial), shape_colors(settings.final)
     share = np.float32(min(max(settings.uv[0], 0.0), 1.0))
     colors = np.ones((len(start), 4), dtype=np.float32)
-    colors[:, :3] = (1 - share) * start + share * end
+    # Colors that both shapes share stay the same to the bit, so that nothing is written anew for them.
+    colors[:, :3] = np.where(start == end, start, (1 - share) * start + share * end)
     return colors
 
 

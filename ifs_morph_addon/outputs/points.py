@@ -124,7 +124,7 @@ def signature(owner, settings, morph, frame) -> tuple:
 
 
 def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
-    """Put the points of the attractor, or none, into the mesh, which shows what has the signature `before`; the mesh."""
+    """Put the points of the attractor, or none, into the mesh; the mesh. It shows what has the signature `before`."""
     mesh = owner.data
     if frame is None:
         mesh.clear_geometry()
@@ -141,10 +141,10 @@ def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
         mesh.vertices.add(count)
         before = ()
     _set(mesh, "position", points.position)
-    _set(mesh, "radius", points.radius * np.float32(output.point_radius))
+    _set(mesh, "radius", np.multiply(points.radius, np.float32(output.point_radius), out=points.radius))
     if before[-1:] != signature(owner, settings, morph, frame)[-1:] or not _has(mesh, "attractorlet", "color"):
         _set(mesh, "attractorlet", points.attractorlet)
-        _set(mesh, "color", _colors(settings)[points.attractorlet])
+        _set(mesh, "color", np.take(_colors(settings), points.attractorlet, axis=0))
     # Bounds are found anew and the object is evaluated again.
     mesh.update()
     mesh.update_tag()
