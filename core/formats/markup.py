@@ -13,6 +13,9 @@ from dataclasses import dataclass
 
 COMMENT = re.compile(r"<!--(?:(?!-->).)*+(?:-->|\Z)", re.DOTALL)
 TAG = re.compile(r"<(/?)\s*([A-Za-z][\w.:-]*)((?:[^<>\"']|\"[^\"]*\"|'[^']*')*+)>")
+WORDS = re.compile(r"(?:[A-Za-z_][\w.]*+\s*+)*+/?\s*")
+"""What may be left of a tag without its attributes: JWildfire has some with spaces in their names."""
+
 OPENING = re.compile(r"<\s*/?\s*([A-Za-z][\w.:-]*)")
 ATTRIBUTE = re.compile(r"([\w.:#-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
@@ -30,7 +33,8 @@ class Tag:
     attributes: tuple[tuple[str, str], ...]
     text: str
     line: int
-    leftover: str = ""
+    is_sound: bool = True
+    """Whether there is nothing in the tag that makes no sense, as after a missing quote."""
 
 
 def tags(text: str) -> Iterator[Tag]:
@@ -59,8 +63,8 @@ def _tag(match: re.Match, text: str, line: int) -> Tag:
         (key, html.unescape(double if single is None else single))
         for key, double, single in ((pair[1], pair[2], pair[3]) for pair in ATTRIBUTE.finditer(inside))
     )
-    leftover = ATTRIBUTE.sub("", inside).strip().removesuffix("/").strip()
-    return Tag(kind, name.lower(), attributes, text, line, leftover)
+    is_sound = WORDS.fullmatch(ATTRIBUTE.sub("", inside).strip()) is not None
+    return Tag(kind, name.lower(), attributes, text, line, is_sound)
 
 
 def quoted(text: str) -> str:

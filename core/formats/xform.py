@@ -47,7 +47,7 @@ class Xform:
         # JWildfire writes a variation's second use as linear#2#.
         self.pairs = [(re.sub(r"#\d+#", "", name), value) for name, value in tag.attributes]
         self.values = dict(self.pairs)
-        if tag.kind == "broken" or tag.leftover:
+        if tag.kind == "broken" or not tag.is_sound:
             raise FormatError(f"{called} (line {tag.line}): the tag cannot be read; look for a quote that is missing.")
 
     def numbers(self, name: str, default: list[float]) -> list[float]:

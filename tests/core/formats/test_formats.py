@@ -219,6 +219,8 @@ def read_or_refused(text):
 @example("<flame" * 10000)
 @example('<a "' * 10000)
 @example("<!--" * 10000)
+@example("<xform " + "a" * 10000 + "!>")
+@example("<xform " + "a='" * 10001 + ">")
 @example("<flame><xform " + 'a="1" ' * 300 + "/>")
 def test_any_text_gives_shapes_or_a_sentence(text):
     read_or_refused(text)
