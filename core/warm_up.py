@@ -1,6 +1,7 @@
 """Calls every kernel once with each kind of arguments that it gets, so that none is left to compile when it is needed.
 
-A program that must not keep a person waiting runs `main` in a process of its own and looks now and then how far it is.
+A program that must not keep a person waiting has processes of their own run `main`, one for each of `PARTS`, looks now
+and then how far they are, and in the end leaves a mark for the next time.
 """
 
 from __future__ import annotations
@@ -42,12 +43,6 @@ COVERED_TWICE = IFS(np.array([[[0.97, 0.0, x], [0.0, 0.97, y]] for x, y in ((0, 
 """Its attractor lies over itself so often that it is drawn by the chaos game."""
 
 
-def run() -> None:
-    """Compile all kernels that were not kept."""
-    for calls in (_shapes, _pictures, _points, _paths):
-        calls()
-
-
 def load() -> Iterator[None]:
     """Have the compiler and the first kernels ready, in steps of a few tenths of a second if kernels were kept."""
     _ = norm.dispatcher
@@ -85,6 +80,17 @@ def _paths() -> None:
         plan_path(morph, compute_locus(morph, RESOLUTION, threads=1, gap=False), 8, threads=1)
 
 
+PARTS = {"pictures": (_pictures, _points), "paths": (_shapes, _paths)}
+"""What takes about as long as another, for as many processes."""
+
+
+def run(*parts: str) -> None:
+    """Compile all kernels of some parts, those aside that were kept."""
+    for part in parts:
+        for calls in PARTS[part]:
+            calls()
+
+
 def share_done(folder: Path, since: float) -> float:
     """Share of the kernels, from 0 to 1, that were put into a folder since a time in seconds since 1970."""
     modules = [module for name, module in list(sys.modules.items()) if name.startswith(f"{__package__}.")]
@@ -112,11 +118,13 @@ def _state() -> str:
     return f"{__package__} {kernels.fingerprint('warm_up')} numba {numba}"
 
 
-def main() -> None:
-    """Compile all kernels into the folder where they are kept, behind all other work, and leave a mark at the end."""
+def mark_done(folder: Path) -> None:
+    """Say that all parts were compiled into a folder, which `is_done` then tells."""
+    _mark(folder).write_text(_state())
+
+
+def main(*parts: str) -> None:
+    """Compile all kernels of some parts, behind all other work of the computer."""
     if hasattr(os, "nice"):
         os.nice(NICENESS)
-    run()
-    folder = kernels.folder()
-    if folder is not None:
-        _mark(folder).write_text(_state())
+    run(*parts)

@@ -1,8 +1,8 @@
-"""Has a process of its own compile the kernels when Blender's window opens with them the first time on a computer.
+"""Has processes of their own compile the kernels when Blender's window opens with them the first time on a computer.
 
 That takes about half a minute, during which a window would freeze. What was compiled is kept in the user's folder of
-the extension. Until the process is over, whatever needs kernels waits and says so, but renders; they must not be wrong,
-and Blender compiles for them as it goes. It does the same without a window, and where no process can do the work.
+the extension. Until the processes are over, whatever needs kernels waits and says so, but renders; they must not be
+wrong, and Blender compiles for them as it goes. It does the same without a window, and where no process can be had.
 """
 
 import os
@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,25 +20,25 @@ from .. import __package__ as base_package
 from ..core import kernels, warm_up
 
 LONGEST = 600.0
-"""Seconds after which the process is given up."""
+"""Seconds after which the processes are given up."""
 
 INTERVAL = 0.25
-"""Seconds between two looks at it."""
+"""Seconds between two looks at them."""
 
 USUAL = 30.0
 ENOUGH_TO_TELL = 0.1
-"""What the process takes in seconds, about, and the share from which on its own pace tells better."""
+"""What preparing takes in seconds, about, and the share from which on its own pace tells better."""
 
 # The extension's own package needs Blender, so empty ones of the same names stand in for it and its parents.
 SCRIPT = """
 import importlib, sys, types
-package, folder, *sys.path = sys.argv[1:]
+part, package, folder, *sys.path = sys.argv[1:]
 parts = package.split(".")
 for end in range(1, len(parts) + 1):
     module = types.ModuleType(".".join(parts[:end]))
     module.__path__ = [folder]
     sys.modules[module.__name__] = module
-importlib.import_module(package + ".core.warm_up").main()
+importlib.import_module(package + ".core.warm_up").main(part)
 """
 
 _running: list["_Preparation"] = []
@@ -49,18 +50,22 @@ class _Preparation:
         self.folder, self.when_over = folder, when_over
         self.since, self.share = time.time(), 0.0
         self.loading = warm_up.load()
+        self.processes: list[subprocess.Popen] = []
         self.output = tempfile.TemporaryFile()  # noqa: SIM115 -- closed in `close`
         try:
-            self.process = subprocess.Popen(
-                _command(),
-                env={**os.environ, "NUMBA_CACHE_DIR": str(folder)},
-                stdin=subprocess.DEVNULL,
-                stdout=self.output,
-                stderr=subprocess.STDOUT,
-                creationflags=_creation_flags(),
-            )
+            for part in warm_up.PARTS:
+                self.processes.append(
+                    subprocess.Popen(
+                        _command(part),
+                        env={**os.environ, "NUMBA_CACHE_DIR": str(folder)},
+                        stdin=subprocess.DEVNULL,
+                        stdout=self.output,
+                        stderr=subprocess.STDOUT,
+                        creationflags=_creation_flags(),
+                    )
+                )
         except OSError:
-            self.output.close()
+            self.close()
             raise
 
     @property
@@ -68,30 +73,32 @@ class _Preparation:
         return time.time() - self.since
 
     def goes_on(self) -> bool:
-        """Whether the process still works; says once what became of it if it failed."""
+        """Whether the processes still work. Once they do not, leaves a mark, or says what became of them."""
         if self.output.closed:
             return False
-        if self.process.poll() is None and self.elapsed < LONGEST:
+        codes = [process.poll() for process in self.processes]
+        if None in codes and not any(codes) and self.elapsed < LONGEST:
             return True
-        failed = self.process.poll() != 0
         said = self.close()
-        if failed:
+        if any(code != 0 for code in codes):
             print(f"IFS Morph: could not prepare ahead, so its first use will take half a minute.\n{said}")
+        else:
+            warm_up.mark_done(self.folder)
         return False
 
     def close(self) -> str:
-        """End the process if it still runs; what it said."""
+        """End the processes that still run; what all said."""
         if self.output.closed:
             return ""
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait()
+        for process in self.processes:
+            process.kill()
+            process.wait()
         with self.output as output:
             output.seek(0)
             return output.read().decode(errors="replace")
 
 
-def _command() -> list[str]:
+def _command(part: str) -> list[str]:
     python = sys.executable or ""
     if not Path(python).name.lower().startswith("python"):
         raise OSError(f"“{python}” is no Python")
@@ -100,7 +107,7 @@ def _command() -> list[str]:
     if sys.pycache_prefix:
         options += ["-X", f"pycache_prefix={sys.pycache_prefix}"]
     extension = str(Path(warm_up.__file__).parents[1])
-    return [python, *options, "-c", SCRIPT, base_package, extension, *filter(None, sys.path)]
+    return [python, *options, "-c", SCRIPT, part, base_package, extension, *filter(None, sys.path)]
 
 
 def _creation_flags() -> int:
@@ -130,7 +137,7 @@ def _user_folder() -> Path:
 
 
 def start(folder: Path, when_over: Callable[[], None]) -> None:
-    """Start the process, and look after it from a timer."""
+    """Start the processes, and look after them from a timer."""
     try:
         _running.append(_Preparation(folder, when_over))
     except OSError as error:
@@ -140,26 +147,24 @@ def start(folder: Path, when_over: Callable[[], None]) -> None:
 
 
 def look() -> float | None:
-    """See how far the process is, and let the window show it; seconds until the next look."""
+    """See how far the processes are, and let the window show it; seconds until the next look."""
     preparation = _running[0]
-    if preparation.goes_on():
-        preparation.share = warm_up.share_done(preparation.folder, preparation.since)
-        _show(message())
-        return INTERVAL
     try:
-        next(preparation.loading)
-        return 0.0
-    except StopIteration:
-        pass
-    except ImportError as error:
-        print(f"IFS Morph: {error}")
+        if preparation.goes_on():
+            preparation.share = warm_up.share_done(preparation.folder, preparation.since)
+            _show(message())
+            return INTERVAL
+        for _ in preparation.loading:
+            return 0.0
+    except Exception:
+        traceback.print_exc()  # Whatever it was, nobody must wait for ever.
     end()
     preparation.when_over()
     return None
 
 
 def end() -> None:
-    """End the process, if it runs, and wait for nothing any more."""
+    """End the processes, if they run, and wait for nothing any more."""
     if bpy.app.timers.is_registered(look):
         bpy.app.timers.unregister(look)
     while _running:

@@ -45,6 +45,11 @@ class Layout:
         names = {item.identifier for item in getattr(getattr(bpy.ops, group), function).get_rna_type().properties}
         return _Button(names)
 
+    def operator_menu_enum(self, name, choice, **_):
+        button = self.operator(name)
+        assert choice in button.names
+        return button
+
     def menu(self, name, **_):
         assert hasattr(bpy.types, name), f"There is no menu {name}"
 
