@@ -15,11 +15,11 @@ endif
 PYTHON := $(UV) run python
 READY := .venv/blender-runs
 
-.PHONY: help setup demo test test-all lint bench figures package clean
+.PHONY: help setup demo test test-all lint bench bench-pairs figures package clean
 .DEFAULT_GOAL := help
 
 help: ## list the tasks
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(READY) ## get Python 3.13, Blender 5.2 as a module, and numba
 
@@ -46,6 +46,9 @@ lint: $(OWN_UV) ## check the code's style
 
 bench: $(READY) ## measure speed and memory, as a table and into out/benchmarks.json
 	@$(PYTHON) -m pytest tests/benchmarks/bench_*.py
+
+bench-pairs: $(READY) ## match every shape to every other, into out/pairs.md
+	@$(PYTHON) tests/benchmarks/pairs.py
 
 package: $(READY) ## build the extension's zips, one for each platform
 	@$(PYTHON) -m release

@@ -50,6 +50,8 @@ class Morph:
     flips : tuple of int
         Maps that reflect at one end only. No path of non-singular maps of the plane joins such ends: the map is
         flattened to a line half-way, as if turned over about its mirror axis and projected.
+    turning : (N,)
+        Radians by which each map turns on the way, counter-clockwise positive; not for the scheme ``elementwise``.
     """
 
     def __init__(self, initial: IFS, final: IFS, scheme: str = "polar", winding: np.ndarray | None = None) -> None:
@@ -74,7 +76,7 @@ class Morph:
             end, _, self._final_stretch = polar(final.linear, reflects[1])
             turn = np.remainder(end - start + np.pi, 2 * np.pi) - np.pi
             turn = np.where(np.abs(turn) >= np.pi - TIE, np.abs(turn), turn)
-            self._start, self._turn = start, turn + 2 * np.pi * winding
+            self._start, self.turning = start, turn + 2 * np.pi * winding
         if scheme == "log-polar":
             for ifs, end, stretch in (
                 (initial, "initial", self._initial_stretch),
@@ -131,7 +133,7 @@ class Morph:
         # diag(1, sign) turns with u about the mirror axis where the ends differ, and stays where they agree.
         start, end = (np.where(reflects, -1.0, 1.0) for reflects in self._reflects)
         sign = np.where(start == end, start, start * np.cos(np.pi * along))
-        orthogonal = rotation(self._start + along * self._turn)
+        orthogonal = rotation(self._start + along * self.turning)
         flipped = np.stack([stretch[..., 0, :], sign[..., None] * stretch[..., 1, :]], axis=-2)
         return orthogonal @ flipped
 

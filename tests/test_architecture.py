@@ -21,7 +21,6 @@ CORE = (
     "ifs",
     "shapes",
     "morph",
-    "matching",
     "heap",
     "overlap",
     "gap",
@@ -33,6 +32,8 @@ CORE = (
     "curve",
     "swelling",
     "path",
+    # It ends with the path through the morph that it found.
+    "matching",
     "words",
     "pieces",
     "chaos",

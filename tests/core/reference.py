@@ -76,9 +76,16 @@ def linkage(points, groups, count):
     trees = [cKDTree(points[groups == i]) for i in range(count)]
     between = np.zeros((count, count))
     for i, j in combinations(range(count), 2):
-        # A distance of zero would read as no edge at all.
-        between[i, j] = max(trees[i].query(trees[j].data)[0].min(), 1e-300)
-    return minimum_spanning_tree(between).data.max() if count > 1 else 0.0
+        # One more, and taken off again: a distance of zero, or close to it, would read as no edge at all.
+        between[i, j] = 1 + trees[i].query(trees[j].data)[0].min()
+    return minimum_spanning_tree(between).data.max() - 1 if count > 1 else 0.0
+
+
+def in_pieces(maps, tolerance, most=6000):
+    """Whether there is for certain a gap wider than the tolerance, relative to the diameter of the points."""
+    points, letters, spacing = dense(maps, most)
+    diameter = np.hypot(*np.ptp(points, axis=0))
+    return linkage(points, letters, len(maps)) - 2 * spacing > tolerance * diameter
 
 
 def chaos_game(ifs, count, seed=0):

@@ -1,0 +1,54 @@
+"""Splitting and doubling: other lists of maps for the same attractor.
+
+A map w_i may give way to its parts ``w_i o w_k`` for all k, and a map may be listed twice: neither changes the
+attractor. A *word* (i, k, ...) names the composition ``w_i o w_k o ...``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..affine import compose, singular_values
+from ..ifs import IFS
+
+Word = tuple[int, ...]
+
+
+def word_map(ifs: IFS, word: Word) -> np.ndarray:
+    """The composition (2, 3) of the maps that a word names, the last one applied first."""
+    composed = ifs.maps[word[0]]
+    for letter in word[1:]:
+        composed = compose(composed, ifs.maps[letter])
+    return composed
+
+
+def word_weight(ifs: IFS, word: Word) -> float:
+    """The share of the measure that a word's piece holds."""
+    return float(np.prod(ifs.weights[list(word)]))
+
+
+def is_cover(words: list[Word], count: int) -> bool:
+    """Whether the words are all maps of a system of `count` maps, some of them split, some listed twice."""
+    different = set(words)
+    prefixes = {word[:length] for word in different for length in range(len(word))} | {()}
+    if prefixes & different:
+        return False
+    return all((*prefix, letter) in different | prefixes for prefix in prefixes for letter in range(count))
+
+
+def split_to(ifs: IFS, count: int) -> list[Word]:
+    """Words by splitting the largest piece again and again, while no more than `count` come of it."""
+    words = [(i,) for i in range(ifs.count)]
+    if ifs.count == 1:
+        return words
+    while len(words) + ifs.count - 1 <= count:
+        sizes = [singular_values(word_map(ifs, word)[:, :2])[0] for word in words]
+        # Sizes that differ by rounding alone are equal, and the first of them goes.
+        largest = int(np.argmax(np.array(sizes) > max(sizes) * (1 - 1e-9)))
+        words[largest : largest + 1] = [(*words[largest], k) for k in range(ifs.count)]
+    return words
+
+
+def split_all(ifs: IFS) -> list[Word]:
+    """The words of two letters: every map split."""
+    return [(i, k) for i in range(ifs.count) for k in range(ifs.count)]

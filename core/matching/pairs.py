@@ -1,0 +1,143 @@
+"""Pairs: which piece of the initial shape becomes which piece of the final one, and how. A list of them is a morph."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..affine import compose, determinant
+from ..ifs import IFS, IFSError
+from ..morph import Morph
+from .expansion import Word, is_cover, word_map, word_weight
+
+IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+"""The symmetry that every shape has."""
+
+Symmetry = tuple[tuple[float, float, float], tuple[float, float, float]]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A map of the initial shape and the map of the final shape that it becomes.
+
+    Attributes
+    ----------
+    initial, final : tuple of int
+        Words: (2,) is map 2, counted from 0, as it is; (2, 0) is the part of it that map 0 makes, after a split. A word
+        may be in several pairs: then it is listed twice or more, and its weight shared.
+    initial_symmetry, final_symmetry : ((a, b, e), (c, d, f)), or None
+        A map that takes the end's attractor to itself, applied before the word's. None leaves it open, in a lock.
+    winding : int or None
+        Whole turns beyond the shorter way round. None leaves it open, in a lock.
+    """
+
+    initial: Word
+    final: Word
+    initial_symmetry: Symmetry | None = IDENTITY
+    final_symmetry: Symmetry | None = IDENTITY
+    winding: int | None = 0
+
+    def plain(self) -> dict:
+        """Lists and numbers only, as JSON and Blender's properties take them."""
+        return {
+            "initial": list(self.initial),
+            "final": list(self.final),
+            "initial_symmetry": _listed(self.initial_symmetry),
+            "final_symmetry": _listed(self.final_symmetry),
+            "winding": self.winding,
+        }
+
+    @classmethod
+    def from_plain(cls, plain: dict) -> Pair:
+        """The pair that `plain` was made of."""
+        return cls(
+            tuple(int(letter) for letter in plain["initial"]),
+            tuple(int(letter) for letter in plain["final"]),
+            _tupled(plain["initial_symmetry"]),
+            _tupled(plain["final_symmetry"]),
+            None if plain["winding"] is None else int(plain["winding"]),
+        )
+
+
+def pairs_to_plain(pairs: Sequence[Pair]) -> list[dict]:
+    """Pairs as lists and numbers only."""
+    return [pair.plain() for pair in pairs]
+
+
+def pairs_from_plain(plain: Sequence[dict]) -> tuple[Pair, ...]:
+    """Pairs from what `pairs_to_plain` gave."""
+    return tuple(Pair.from_plain(each) for each in plain)
+
+
+def morph_of_pairs(initial: IFS, final: IFS, pairs: Sequence[Pair], scheme: str = "polar") -> Morph:
+    """The morph that pairs stand for, without any search.
+
+    Its ends have one map a pair, and the same attractors as the shapes given.
+
+    Raises
+    ------
+    IFSError
+        If a pair names a map that there is not, or a piece of a shape is in no pair.
+    """
+    windings = [pair.winding or 0 for pair in pairs]
+    return Morph(
+        _end(initial, [(pair.initial, pair.initial_symmetry) for pair in pairs], "initial"),
+        _end(final, [(pair.final, pair.final_symmetry) for pair in pairs], "final"),
+        scheme,
+        np.array(windings),
+    )
+
+
+def reversed_pairs(initial: IFS, final: IFS, pairs: Sequence[Pair]) -> tuple[Pair, ...]:
+    """The pairs of the morph from `final` to `initial` that runs backwards through the one these pairs stand for."""
+    turning = morph_of_pairs(initial, final, pairs).turning
+    swapped = [Pair(pair.final, pair.initial, pair.final_symmetry, pair.initial_symmetry) for pair in pairs]
+    # Half a turn goes counter-clockwise both ways unless it is wound back.
+    winding = np.round((-turning - morph_of_pairs(final, initial, swapped).turning) / (2 * np.pi))
+    return tuple(replace(pair, winding=int(turns)) for pair, turns in zip(swapped, winding, strict=True))
+
+
+def shares(words: Sequence[Word]) -> np.ndarray:
+    """Share (N,) of its word's weight that each of a list of words has."""
+    counts = Counter(words)
+    return np.array([1 / counts[word] for word in words])
+
+
+def symmetry_text(symmetry: Symmetry | None) -> str:
+    """A symmetry in words: ``turned by 120°``, ``mirrored at 90°``, or nothing for the identity."""
+    if symmetry is None:
+        return "any"
+    linear = np.array(symmetry)[:, :2]
+    degrees = round(float(np.degrees(np.arctan2(linear[1, 0], linear[0, 0]))), 1)
+    if determinant(linear) < 0:
+        # The axis lies at half the angle.
+        return f"mirrored at {degrees / 2 % 180:g}°"
+    return f"turned by {degrees:g}°" if degrees else ""
+
+
+def _end(ifs: IFS, listed: list[tuple[Word, Symmetry | None]], name: str) -> IFS:
+    words = [word for word, _ in listed]
+    letters = [letter for word in words for letter in word]
+    if not words or min(map(len, words)) == 0 or min(letters) < 0 or max(letters) >= ifs.count:
+        raise IFSError(f"A pair names a map that the {name} shape does not have; it has {ifs.count}. Match again.")
+    if not is_cover(words, ifs.count):
+        raise IFSError(
+            f"The pairs do not make up the whole {name} shape; match again, or add the maps that are missing."
+        )
+    maps = np.array([word_map(ifs, word) for word in words])
+    gauges = np.array([IDENTITY if symmetry is None else symmetry for _, symmetry in listed], dtype=float)
+    weights = np.array([word_weight(ifs, word) for word in words]) * shares(words)
+    # Split often enough, weights of zero alone may be left.
+    weights = weights if weights.sum() > 0 else None
+    return IFS(compose(maps, gauges), weights, ifs.name)
+
+
+def _listed(symmetry: Symmetry | None) -> list | None:
+    return None if symmetry is None else [list(row) for row in symmetry]
+
+
+def _tupled(symmetry: list | None) -> Symmetry | None:
+    return None if symmetry is None else tuple(tuple(float(entry) for entry in row) for row in symmetry)

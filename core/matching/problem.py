@@ -1,0 +1,238 @@
+"""What the search works on: the words and symmetries of both ends, and candidates that pair them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import total_ordering
+
+import numpy as np
+
+from ..affine import compose
+from ..ifs import IFS
+from .assignment import assign
+from .expansion import Word, word_map
+from .pairs import Pair
+from .scoring import MEAN, WORST, Table, golden_samples, score
+
+SAMPLES = 12
+"""Times looked at for every candidate."""
+
+CLUTTER = 0.03
+"""What it costs to list one pair more than needed."""
+
+TURNS = 4
+"""Ways to turn the final shape before its pieces are assigned to those nearby."""
+
+
+@dataclass(frozen=True, eq=False)
+class End:
+    """One end of a problem.
+
+    Attributes
+    ----------
+    ifs : IFS
+    symmetries : (G, 2, 3)
+        Of its attractor, the identity first.
+    words : list of Word
+        Each at least once in every candidate.
+    """
+
+    ifs: IFS
+    symmetries: np.ndarray
+    words: list[Word]
+
+    def maps(self) -> np.ndarray:
+        """All words through all symmetries (W * G, 2, 3)."""
+        maps = np.array([word_map(self.ifs, word) for word in self.words])
+        return compose(maps[:, None], self.symmetries[None]).reshape(-1, 2, 3)
+
+
+@dataclass(frozen=True)
+class Lock:
+    """A pair that is to be kept: rows of both words, and what is fixed about it besides."""
+
+    words: tuple[int, int]
+    symmetries: tuple[int | None, int | None] = (None, None)
+    winding: int | None = None
+
+
+@total_ordering
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A pairing, ordered by score.
+
+    Attributes
+    ----------
+    score : float
+    rows : (2, N) int64
+        Of the tables of the two ends: word times number of symmetries, plus the symmetry. Locked pairs come first.
+    winding : (N,) int64
+    swells : (S,)
+        At the times looked at.
+    cost_beside_swell : float
+        What is in the score for turning, flips, sizes and further pairs.
+    """
+
+    score: float
+    rows: np.ndarray
+    winding: np.ndarray
+    swells: np.ndarray
+    cost_beside_swell: float
+
+    @property
+    def spotless(self) -> bool:
+        """Whether no sample needs swell."""
+        return not self.swells.any()
+
+    def __lt__(self, other: Candidate) -> bool:
+        return self.score < other.score
+
+
+class Problem:
+    """The words, symmetries and locks of a search, and its count of work.
+
+    Attributes
+    ----------
+    least : int
+        Pairs that are needed.
+    locked : int
+        Pairs that stay; every candidate begins with them.
+    work : int
+        Shapes decided so far, each counted by its pairs of maps.
+    """
+
+    def __init__(
+        self, initial: End, final: End, tolerance: float, locks: tuple[Lock, ...] = (), threads: int | None = None
+    ) -> None:
+        self.ends = (initial, final)
+        self.tolerance, self.threads, self.locks = tolerance, threads, locks
+        self.maps = [end.maps() for end in self.ends]
+        self.tables = [Table.of(maps) for maps in self.maps]
+        self.sizes = [len(end.symmetries) for end in self.ends]
+        self.word_counts = [len(end.words) for end in self.ends]
+        self.locked = len(locks)
+        held = [len({lock.words[end] for lock in locks}) for end in (0, 1)]
+        self.least = self.locked + max(self.word_counts[end] - held[end] for end in (0, 1))
+        self.work = 0
+        self.samples = golden_samples(SAMPLES)
+
+    def words(self, rows: np.ndarray, end: int) -> np.ndarray:
+        """Words (N,) of one end of a candidate's rows."""
+        return rows[end] // self.sizes[end]
+
+    def may_turn(self, end: int, pair: int) -> bool:
+        """Whether the symmetry of a pair is open."""
+        return pair >= self.locked or self.locks[pair].symmetries[end] is None
+
+    def may_wind(self, pair: int) -> bool:
+        """Whether the winding of a pair is open."""
+        return pair >= self.locked or self.locks[pair].winding is None
+
+    def evaluate(self, starts: list[tuple[np.ndarray, np.ndarray]]) -> list[Candidate]:
+        """Candidates of rows and windings."""
+        order = np.arange(len(self.samples))
+        found: list[Candidate] = []
+        for rows, winding in starts:
+            found += self._scored([(rows, winding)], np.inf, order)
+        return found
+
+    def best_of(self, batch: list[tuple[np.ndarray, np.ndarray]], best: Candidate) -> Candidate:
+        """The best of a batch, or `best` if none is better."""
+        # Those that are no better show it soonest where the best one swells most.
+        order = np.argsort(-best.swells, kind="stable")
+        groups: dict[int, list] = {}
+        for rows, winding in batch:
+            groups.setdefault(rows.shape[1], []).append((rows, winding))
+        for group in groups.values():
+            best = min([best, *self._scored(group, best.score - 1e-9, order)])
+        return best
+
+    def _scored(self, batch: list, bound: float, order: np.ndarray) -> list[Candidate]:
+        rows = np.array([rows for rows, _ in batch])
+        winding = np.array([winding for _, winding in batch])
+        count = rows.shape[2]
+        extra = CLUTTER * (count - self.least)
+        samples = self.samples[order]
+        scores, found, work = score(*self.tables, rows, winding, samples, self.tolerance, bound, extra, self.threads)
+        self.work += work * count * (count - 1) // 2
+        swells = np.empty_like(found)
+        swells[:, order] = found
+        beside = scores - WORST * swells.max(axis=1) - MEAN * swells.mean(axis=1)
+        # Those given up have an infinite score.
+        return [
+            Candidate(float(scores[k]), rows[k], winding[k], swells[k], float(beside[k])) for k in range(len(batch))
+        ]
+
+    def look_at(self, times: np.ndarray) -> None:
+        """Add samples."""
+        self.samples = np.concatenate([self.samples, times])
+
+    def swells(self, candidate: Candidate, times: np.ndarray) -> np.ndarray:
+        """Swell (S,) that a candidate needs at times (S,) of the straight line."""
+        rows, winding = candidate.rows[None], candidate.winding[None]
+        _, swells, _ = score(*self.tables, rows, winding, times, self.tolerance, np.inf, 0.0, self.threads)
+        return swells[0]
+
+    def pairs(self, candidate: Candidate) -> tuple[Pair, ...]:
+        """A candidate as pairs of words and symmetries."""
+        found = []
+        for k in range(candidate.rows.shape[1]):
+            parts = []
+            for end in (0, 1):
+                word, symmetry = divmod(int(candidate.rows[end, k]), self.sizes[end])
+                matrix = self.ends[end].symmetries[symmetry]
+                parts.append((self.ends[end].words[word], tuple(tuple(row) for row in matrix.tolist())))
+            found.append(Pair(parts[0][0], parts[1][0], parts[0][1], parts[1][1], int(candidate.winding[k])))
+        return tuple(found)
+
+    def starts(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Rows and windings to start from: the given order, and the assignments of least motion."""
+        given = [self._filled(end) for end in (0, 1)]
+        turned = [self._assigned(*given, 2 * np.pi * turn / TURNS) for turn in range(TURNS)]
+        found = [self._complete(given[0], final) for final in (given[1], *turned)]
+        different = {tuple(rows.ravel()): (rows, winding) for rows, winding in found}
+        return list(different.values())
+
+    def shuffled(self, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and winding in an order of chance, through symmetries of chance."""
+        first, last = (random.permutation(self._filled(end)) for end in (0, 1))
+        first += random.integers(self.sizes[0], size=len(first))
+        last += random.integers(self.sizes[1], size=len(last))
+        return self._complete(first, last)
+
+    def _filled(self, end: int) -> np.ndarray:
+        """Rows of the words of one end that no lock holds, in turn until there are enough."""
+        held = {lock.words[end] for lock in self.locks}
+        words = [word for word in range(self.word_counts[end]) if word not in held]
+        words = words or list(range(self.word_counts[end]))
+        return (
+            np.array([words[k % len(words)] for k in range(self.least - self.locked)], dtype=np.int64) * self.sizes[end]
+        )
+
+    def _complete(self, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and winding of a candidate: the locked pairs, then those of the rows given."""
+        locked = [
+            [lock.words[end] * self.sizes[end] + (lock.symmetries[end] or 0) for lock in self.locks] for end in (0, 1)
+        ]
+        rows = np.array([[*locked[0], *first], [*locked[1], *last]], dtype=np.int64)
+        winding = np.zeros(rows.shape[1], dtype=np.int64)
+        winding[: self.locked] = [lock.winding or 0 for lock in self.locks]
+        return rows, winding
+
+    def _assigned(self, first: np.ndarray, last: np.ndarray, angle: float) -> np.ndarray:
+        """The final rows in the order of least motion, through the symmetry nearest, if the final shape were turned.
+
+        Pieces are compared by the images of a frame, in units of the enclosing discs.
+        """
+        images = []
+        for end, maps in zip(self.ends, self.maps, strict=True):
+            center, radius = end.ifs.enclosing_disc
+            frame = center + np.array([[0, 0], [0.5, 0], [0, 0.5]]) * radius
+            placed = np.einsum("eij,pj->epi", maps[:, :, :2], frame) + maps[:, None, :, 2]
+            images.append((placed - center) / (radius or 1.0))
+        cos, sin = np.cos(angle), np.sin(angle)
+        start = images[0][first]
+        gauged = (images[1] @ np.array([[cos, sin], [-sin, cos]])).reshape(-1, self.sizes[1], 3, 2)
+        apart = ((start[:, None, None] - gauged[last // self.sizes[1]]) ** 2).sum(axis=(-1, -2))
+        to = assign(apart.min(axis=2))
+        return last[to] + apart.argmin(axis=2)[np.arange(len(to)), to]
