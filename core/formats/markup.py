@@ -12,12 +12,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 COMMENT = re.compile(r"<!--(?:(?!-->).)*+(?:-->|\Z)", re.DOTALL)
-TAG = re.compile(r"<(/?)\s*([A-Za-z][\w.:-]*)((?:[^<>\"']|\"[^\"]*\"|'[^']*')*+)>")
+TAG = re.compile(r"<(/?)\s*([A-Za-z][\w.:-]*+)((?:[^<>\"']|\"[^\"]*\"|'[^']*')*+)>")
 WORDS = re.compile(r"(?:[A-Za-z_][\w.]*+\s*+)*+/?\s*")
 """What may be left of a tag without its attributes: JWildfire has some with spaces in their names."""
 
-OPENING = re.compile(r"<\s*/?\s*([A-Za-z][\w.:-]*)")
-ATTRIBUTE = re.compile(r"([\w.:#-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+OPENING = re.compile(r"<\s*+/?\s*+([A-Za-z][\w.:-]*)")
+ATTRIBUTE = re.compile(r"(?<![\w.:#-])([\w.:#-]++)\s*+=\s*+(?:\"([^\"]*)\"|'([^']*)')")
 
 
 @dataclass(frozen=True)

@@ -141,6 +141,5 @@ class Xform:
 
     def _is_parameter(self, name: str) -> bool:
         """Whether an attribute belongs to another one: julian_power to julian."""
-        return any(
-            name.startswith(f"{other}_") for other in self.values if other != name and not OTHER.fullmatch(other)
-        )
+        owners = (name[: match.start()] for match in re.finditer("_", name))
+        return any(owner in self.values and not OTHER.fullmatch(owner) for owner in owners)
