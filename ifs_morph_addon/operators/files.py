@@ -126,10 +126,12 @@ class IFSMORPH_OT_import_shapes(_Choice, ImportHelper, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     filename_ext = ".ifs"
-    filter_glob: bpy.props.StringProperty(default=FILTER, options={"HIDDEN"})
-    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options=UNSAVED)
-    directory: bpy.props.StringProperty(subtype="DIR_PATH", options=UNSAVED)
-    files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options=UNSAVED)
+    filter_glob: bpy.props.StringProperty(description="Which files to list", default=FILTER, options={"HIDDEN"})
+    filepath: bpy.props.StringProperty(description="File to read", subtype="FILE_PATH", options=UNSAVED)
+    directory: bpy.props.StringProperty(description="Folder of the files", subtype="DIR_PATH", options=UNSAVED)
+    files: bpy.props.CollectionProperty(
+        description="Files to read together", type=bpy.types.OperatorFileListElement, options=UNSAVED
+    )
     target: bpy.props.EnumProperty(
         name="Use As",
         description="What the shape becomes",
@@ -298,7 +300,7 @@ class IFSMORPH_OT_export_shapes(ExportHelper, bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     filename_ext = ".ifs"
-    filter_glob: bpy.props.StringProperty(default=FILTER, options={"HIDDEN"})
+    filter_glob: bpy.props.StringProperty(description="Which files to list", default=FILTER, options={"HIDDEN"})
     format: bpy.props.EnumProperty(name="Format", description="What kind of file to write", items=FORMATS)
     shapes: bpy.props.EnumProperty(
         name="Shapes",
