@@ -50,6 +50,9 @@ GROWTH_LIMIT = 12.0
 """Attractors whose words multiply by a higher exponent are left to the chaos game. One of its points costs as much as
 six of a set, but such attractors overlap themselves so often that sets are no gain."""
 
+MOST_ZOOM = 2.0**40
+"""Radius of an attractor in pixels, at most: beyond, 64 bit floats would no longer tell its pieces apart."""
+
 CHAOS_POINTS = 16.0
 """Points of the chaos game for each pixel of the picture, at least."""
 
@@ -102,7 +105,8 @@ def render(
     Raises
     ------
     IFSError
-        If there is no attractor, or too many attractorlets to tell apart.
+        If there is no attractor, too many attractorlets to tell apart, or so small a part to show that numbers are
+        not precise enough.
     ValueError
         If the size, the window, the mode or the norms make no sense.
     """
@@ -117,6 +121,11 @@ def render(
 
     across, along = width / (x1 - x0), height / (y1 - y0)
     maps, center, radius = unit_maps(ifs, least_radius=1e-9 / max(across, along))
+    if not radius * max(across, along) <= MOST_ZOOM:
+        raise IFSError(
+            f"The window is {x1 - x0:.3g} wide and the attractor {2 * radius:.3g}: numbers are not precise enough to "
+            "show so small a part; make the window larger or bring the maps nearer to each other."
+        )
     root = np.array([radius * across, 0.0, (center[0] - x0) * across, 0.0, radius * along, (center[1] - y0) * along])
     labels = np.arange(1, ifs.count + 1, dtype=np.uint8) if mode == "attractorlet" else np.ones(ifs.count, np.uint8)
     weights = ifs.weights

@@ -4,6 +4,7 @@ import math
 import shutil
 import subprocess
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from numba import njit
 from core.affine import compose
 from core.drawing import deposit, mark
 from core.ifs import IFS
+from core.morph import Morph
 from core.pieces import measures, outlines
 from core.raster import MODES, fit_window, render
 from core.shapes import SHAPES
@@ -82,9 +84,9 @@ def subdivide(word, maps, x, y, fineness, most, picture):
 class View:
     """A shape in pixels, as the references want it."""
 
-    def __init__(self, ifs, size):
+    def __init__(self, ifs, size, window=None):
         self.ifs, self.size = ifs, size
-        x0, y0, x1, _ = self.window = fit_window(ifs, size, margin=0.0537)
+        x0, y0, x1, _ = self.window = window or fit_window(ifs, size, margin=0.0537)
         self.scale = size[0] / (x1 - x0)
         shift = (ifs.translation + ifs.linear @ (x0, y0) - (x0, y0)) * self.scale
         self.in_pixels = np.concatenate([ifs.linear, shift[..., None]], axis=-1).reshape(-1, 6)
@@ -92,11 +94,11 @@ class View:
         self.root = np.array([radius, 0.0, center[0] - x0, 0.0, radius, center[1] - y0]) * self.scale
         self.table = np.searchsorted(np.cumsum(ifs.weights), (np.arange(4096) + 0.5) / 4096)
 
-    def exact(self):
+    def exact(self, fineness=FINENESS):
         """Return the pixels of the exact subdivision, or None if it has too many pieces."""
         picture = np.zeros(self.size[::-1], np.uint8)
         x, y = np.linalg.solve(np.eye(2) - self.maps[0].reshape(2, 3)[:, :2], self.maps[0, [2, 5]])
-        pieces = subdivide(self.root, self.maps, x, y, FINENESS, MOST_PIECES, picture)
+        pieces = subdivide(self.root, self.maps, x, y, fineness, MOST_PIECES, picture)
         return picture if pieces <= MOST_PIECES else None
 
     def play(self, count, picture, start=None):
@@ -141,6 +143,31 @@ def test_against_chaos(figure, name):
     ours = fastest(lambda: render(view.ifs, HD, view.window, threads=1))
     figure("times as fast", fastest(chaos, 2) / ours, at_least=LEAST_TIMES.get(name, 1.0))
     figure("covered", 100 * covered(picture, reference), " %", at_least=100 * COVERAGE)
+
+
+@pytest.mark.parametrize(
+    "initial, final", [("turned gasket", "gasket"), ("terdragon", "gasket"), ("Lévy curve", "Heighway dragon")]
+)
+def test_flicker(figure, initial, final):
+    """Pixels that change: of a still frame, between others, and in motion over those of an exact rendering."""
+    morph, size = Morph(SHAPES[initial], SHAPES[final]), (800, 600)
+    norms = np.max([morph.at(t, t).norms for t in np.linspace(0, 1, 129)], axis=0)
+    window = fit_window([morph.at(t, t) for t in np.linspace(0, 1, 9)], size)
+    fixed_points = [morph.at(t, t).fixed_points for t in (0.4, 0.4001)]
+    # Pixels that the fixed points move by on average, from t = 0 to 1.
+    speed = np.linalg.norm(fixed_points[1] - fixed_points[0], axis=1).mean() / 1e-4 * size[0] / (window[2] - window[0])
+
+    def shown(t):
+        return render(morph.at(t, t), size, window, norms=norms, dtype=np.uint8)
+
+    before, _, after = shown(0.4), shown(0.5), shown(0.4)
+    figure("still, pixels changed", np.count_nonzero(before != after), at_most=0)
+    for step in (0.02, 0.2):
+        times = 0.4 + np.arange(5) * step / speed
+        ours = [shown(t) for t in times]
+        exact = [View(morph.at(t, t), size, window).exact(0.35) for t in times]
+        toggles = [sum(np.count_nonzero(a != b) for a, b in pairwise(pictures)) for pictures in (ours, exact)]
+        figure(f"{step} pixels a frame, over exact", toggles[0] / toggles[1], at_most=1.1)
 
 
 @pytest.mark.skipif(shutil.which("flam3-render") is None, reason="flam3-render is not installed")

@@ -181,3 +181,13 @@ def test_no_attractor_is_an_error():
 def test_what_makes_no_sense_is_an_error(count, weights):
     with pytest.raises(ValueError, match=r"points|weights"):
         point_cloud(SHAPES["gasket"], count, weights)
+
+
+def test_points_in_a_space_are_those_of_the_plane_moved_and_scaled():
+    plane = point_cloud(SHAPES["Barnsley fern"], 2000)
+    space = point_cloud(SHAPES["Barnsley fern"], 2000, placing=(0.5, -2.0, 4.0))
+    assert space.position.shape == (2000, 3)
+    assert not space.position[:, 2].any()
+    assert np.allclose(space.position[:, :2] * 4 + (0.5, -2.0), plane.position, atol=1e-5)
+    assert np.allclose(space.radius * 4, plane.radius, rtol=1e-5)
+    assert np.array_equal(space.attractorlet, plane.attractorlet)

@@ -244,6 +244,12 @@ def test_motion_toggles_no_more_pixels_than_an_exact_rendering(pair, fixed_cut, 
     assert 0 < found <= 1.1 * exact + 5
 
 
+def test_a_set_comes_in_the_type_asked_for():
+    numbers, marks = (render(SHAPES["terdragon"], SIZE, dtype=dtype) for dtype in (np.float32, np.uint8))
+    assert (numbers.dtype, marks.dtype) == (np.float32, np.uint8)
+    assert np.array_equal(numbers, marks)
+
+
 # ---- windows -------------------------------------------------------------------------------------------------------
 
 
@@ -327,6 +333,15 @@ def test_too_many_attractorlets_to_tell_apart_are_an_error():
     with pytest.raises(IFSError, match="255"):
         render(many, SIZE, mode="attractorlet")
     assert render(many, (512, 8)).any()
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("fixed_cut", [False, True])
+def test_so_small_a_part_that_numbers_cannot_tell_it_is_an_error(mode, fixed_cut):
+    """It would take minutes to take words apart that all seem to lie in one place."""
+    ifs = Morph(SHAPES["turned gasket"], SHAPES["gasket"]).at(-1e10, 1e20)
+    with pytest.raises(IFSError, match=r"window is 1 wide .* larger"):
+        render(ifs, SIZE, (0, 0, 1, 1), mode, norms=ifs.norms if fixed_cut else None)
 
 
 @pytest.mark.parametrize(

@@ -169,6 +169,18 @@ def test_attractorlets_mix_by_their_share_of_a_pixel(factor, premultiplied):
     assert np.allclose(result, expected, atol=1e-5)
 
 
+@pytest.mark.parametrize("mode", ["set", "attractorlet"])
+def test_marks_do_as_well_as_numbers(mode):
+    marks = np.random.default_rng(3).integers(0, 2, (12, 16)).astype(np.uint8)
+    colors = {"set": RED, "attractorlet": [RED]}[mode]
+    assert np.array_equal(
+        shade(marks, "set", RED, antialiasing=2, premultiplied=True),
+        shade(marks.astype(np.float32), "set", RED, antialiasing=2, premultiplied=True),
+    )
+    of_labels = shade(marks, mode, colors, antialiasing=2, premultiplied=True)
+    assert np.allclose(of_labels, shade(marks, "set", RED, antialiasing=2, premultiplied=True), atol=1e-6)
+
+
 def test_no_attractorlet_at_all_is_transparent():
     assert not shade(np.zeros((2, 2), np.uint8), "attractorlet", attractorlet_colors(3)).any()
 
