@@ -36,7 +36,7 @@ SIZE = (64, 48)
 RESOLUTION = 10
 """Of loci, in nodes a side."""
 
-NICENESS = 10
+NICENESS = 5
 """How far the process stands back behind others, where the system knows of that."""
 
 COVERED_TWICE = IFS(np.array([[[0.97, 0.0, x], [0.0, 0.97, y]] for x, y in ((0, 0), (0.03, 0), (0, 0.03))]))

@@ -10,6 +10,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 from ...core.formats import SUFFIXES, Entry, FormatError, read_file, read_text, write_file, write_text
 from ...core.formats.entry import unused_name
 from ...core.ifs import IFSError
+from .. import preparation
 from ..conversion import fit_window
 from ..entries import frame_entry, require_storable, shape_entry, write_entry
 from .poll import ENDS, any_morph, editable_morph, shape_of
@@ -220,6 +221,8 @@ class IFSMORPH_OT_import_shapes(_Choice, ImportHelper, bpy.types.Operator):
 
 
 def _report_attractor(operator, entry: Entry) -> None:
+    if preparation.is_running():
+        return  # Kernels would have to tell; the panel does so later.
     try:
         entry.ifs().require_attractor()
     except IFSError as error:

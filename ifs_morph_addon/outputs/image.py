@@ -21,7 +21,7 @@ RAMP = "fire"
 def add_mesh(name: str):
     """Make the plane's mesh; `draw` gives it the proportions of the window."""
     mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
+    mesh.from_pydata([(-0.5, -0.5, 0), (0.5, -0.5, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0)], [], [(0, 1, 2, 3)])
     mesh.uv_layers.new().data.foreach_set("uv", np.float32([0, 0, 1, 0, 1, 1, 0, 1]))
     return mesh
 
