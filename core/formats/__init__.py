@@ -53,7 +53,7 @@ def read_text(text: str, name: str = "unnamed") -> Reading:
     """
     if not text.strip():
         raise FormatError("There is no text; copy the entries of an .ifs file or a flame first.")
-    if re.search(r"<\s*(flame|x?form|finalxform|jwf-flame)", text, re.IGNORECASE):
+    if re.search(r"<\s*(jwf-)?(flame|xform|finalxform)\b", text, re.IGNORECASE):
         return read_flames(text)
     return read_ifs(text, name)
 

@@ -13,10 +13,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..affine import compose, invert
-from .entry import LARGEST_COUNT, LARGEST_NUMBER, Entry, FormatError, Reading, called, reading
+from .entry import LARGEST_COUNT, LARGEST_NUMBER, NUMBER, Entry, FormatError, Reading, called, reading
 from .markup import Tag, tags
 from .symmetry import isometry, symmetry_maps, unfold
 from .xform import IDENTITY, Xform
+
+FLAMES = ("flame", "jwf-flame")
 
 MIRROR = np.array([[1.0, -1.0, 1.0], [-1.0, 1.0, -1.0]])
 """Factors that turn a map (2, 3) with y down into the same map with y up, and back."""
@@ -87,22 +89,19 @@ def _flames(text: str) -> Iterator[_Flame]:
     """Gather the tags of each flame."""
     flame, part, count = None, None, 0
     for tag in tags(text):
-        if tag.name == "flame" and tag.kind != "close":
+        if tag.name in FLAMES and tag.kind != "close":
             if flame is not None:
                 flame.ending = f"the next flame begins in line {tag.line} before its </flame>"
                 yield flame
             count += 1
             attributes = dict(tag.attributes)
             flame = part = _Flame(attributes.get("name") or f"flame {count}", tag.line, attributes)
-            if tag.kind == "broken":
-                flame.ending = "its tag cannot be read; look for a quote that is missing"
+            if tag.kind != "open":
+                unreadable = "its tag cannot be read; look for a quote that is missing"
+                flame.ending = unreadable if tag.kind == "broken" else ""
                 yield flame
                 flame = None
-            elif tag.kind == "empty":
-                flame.ending = ""
-                yield flame
-                flame = None
-        elif tag.name == "flame":
+        elif tag.name in FLAMES:
             if flame is not None:
                 flame.ending = ""
                 yield flame
@@ -150,12 +149,10 @@ def _add_colors(flame: _Flame, tag: Tag) -> None:
     """Read the palette of a flame: hexadecimal text, hexadecimal data, or an element for each color."""
     attributes = dict(tag.attributes)
     if tag.name == "color":
-        try:
-            index = int(attributes["index"])
-            color = np.array([float(word) for word in attributes.get("rgb", attributes.get("rgba", "")).split()[:3]])
-            flame.palette[index] = np.clip(color.round(), 0, 255).astype(np.uint8).reshape(3)
-        except (KeyError, ValueError):
-            pass
+        channels = attributes.get("rgb", attributes.get("rgba", "")).split()[:3]
+        index = attributes.get("index", "")
+        if re.fullmatch("[0-9]{1,3}", index) and len(channels) == 3 and all(map(NUMBER.fullmatch, channels)):
+            flame.palette[int(index)] = np.clip(np.round(np.array(channels, float)), 0, 255).astype(np.uint8)
         return
     # In <colors> the first of four bytes means nothing, in an RGBA palette the last one.
     digits = re.sub(r"\s", "", attributes.get("data", tag.text))

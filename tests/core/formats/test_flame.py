@@ -123,6 +123,17 @@ def test_jwildfire():
     assert found.entries[0].transitions is None
 
 
+def test_jwildfire_has_a_root_of_its_own():
+    found = read_text(JWILDFIRE.replace("flame", "jwf-flame"))
+    assert [entry.name for entry in found.entries] == ["two layers layer 1", "flower"]
+
+
+def test_colors_that_are_none_are_left_out():
+    colors = ('index="0" rgb="1 2 3"', 'index="1" rgb="nan 0 0"', 'index="x" rgb="0 0 0"', 'rgb="0 0 0"', 'index="9"')
+    entry = one(flame(HALF).replace("</", "".join(f"<color {color}/>" for color in colors) + "</"))
+    np.testing.assert_array_equal(entry.palette, [[1, 2, 3]])
+
+
 @pytest.mark.parametrize(
     "text",
     [
