@@ -48,6 +48,18 @@ def invert(maps: np.ndarray) -> np.ndarray:
     return np.concatenate([linear, translation[..., None]], axis=-1)
 
 
+def through(points: np.ndarray, images: np.ndarray) -> np.ndarray:
+    """Map (2, 3) that takes three points (3, 2), not on one line, to their images (3, 2).
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If the points lie on one line.
+    """
+    points, images = np.asarray(points, dtype=float), np.asarray(images, dtype=float)
+    return np.linalg.solve(np.column_stack([points, np.ones(3)]), images).T
+
+
 def determinant(linear: np.ndarray) -> np.ndarray:
     """Determinant of linear parts (..., 2, 2): the signed factor by which areas grow."""
     return linear[..., 0, 0] * linear[..., 1, 1] - linear[..., 0, 1] * linear[..., 1, 0]

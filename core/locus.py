@@ -72,6 +72,13 @@ class Locus:
         row = int(np.clip(round((v - self.v[0]) / spacing), 0, len(self.v) - 1))
         return row, column
 
+    def nearest_nodes(self, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rows (V',) nearest to the coordinates v and columns (U',) nearest to u: this locus on other nodes."""
+        spacing = self.u[1] - self.u[0]
+        rows = np.clip(np.rint((v - self.v[0]) / spacing), 0, len(self.v) - 1)
+        columns = np.clip(np.rint((u - self.u[0]) / spacing), 0, len(self.u) - 1)
+        return rows.astype(int), columns.astype(int)
+
     def picture(self, path: np.ndarray | None = None) -> np.ndarray:
         """The locus as colours: white connected, blue to black by the gap disconnected (see `COLORS`).
 

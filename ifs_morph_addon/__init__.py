@@ -10,6 +10,7 @@ MODULES = (
     "properties",
     "handlers",
     "operators",
+    "live",
     "ui",
     "editors",
 )

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..core.affine import from_parameters, to_parameters
+from ..core.connectedness import Connectedness, connectedness
 from ..core.ifs import IFS, IFSError
 from ..core.morph import SCHEMES, Morph
 from ..core.raster import fit_window as fitted_window
@@ -85,6 +86,28 @@ def _morph(initial: IFS, final: IFS, scheme: str, winding: bytes) -> Morph:
     return Morph(initial, final, core_name(scheme, SCHEMES), np.frombuffer(winding, dtype=np.int32))
 
 
+def state_sentence(settings) -> str:
+    """Whether the attractor at the settings' (u,v) and swell is in one piece, in one sentence."""
+    if preparation.is_running():
+        return preparation.message()
+    try:
+        return _state_sentence(morph_of(settings), *settings.uv, settings.swell, tolerance(settings))
+    except IFSError as error:
+        return str(error)
+
+
+@lru_cache(maxsize=256)
+def _state_sentence(morph: Morph, u: float, v: float, swell: float, tolerance: float) -> str:
+    verdict = connectedness(morph.at(u, v, swell), tolerance)
+    if verdict.state == Connectedness.CONNECTED:
+        return "Here the shape is in one piece."
+    if verdict.state == Connectedness.DISCONNECTED:
+        return f"Here the shape is in pieces; the gap is {100 * verdict.gap[0]:.2g} % of its size."
+    if verdict.state == Connectedness.UNDECIDED:
+        return "Here it could not be decided whether the shape is in one piece."
+    return "Here there is no shape: the maps do not shrink enough."
+
+
 def tolerance(settings) -> float:
     """Gaps below this share of the attractor's enclosing diameter count as none."""
     return 1 / settings.gap_resolution
@@ -153,6 +176,12 @@ def map_parameters(item) -> np.ndarray:
 def set_map_parameters(item, parameters) -> None:
     """Set a map's matrix from the numbers of `map_parameters`."""
     item.matrix = from_parameters(parameters)
+
+
+def edited_shape(owner):
+    """Shape whose maps are edited in the viewport."""
+    settings = owner.ifs_morph
+    return settings.initial if settings.edited_end == "INITIAL" else settings.final
 
 
 def path_samples(owner, count: int = FIT_SAMPLES) -> np.ndarray:

@@ -6,6 +6,7 @@ a picture's window or an attractor's number of maps never changes with the frame
 
 import bpy
 from bpy.props import (
+    BoolProperty,
     CollectionProperty,
     EnumProperty,
     FloatProperty,
@@ -18,7 +19,7 @@ from bpy.props import (
 from . import conversion
 from .conversion import identifier
 from .output_properties import IFSMorphOutputSettings
-from .property_options import LEAF, LIST, STILL, redraw, refit
+from .property_options import LEAF, LIST, STILL, redraw, refit, show_edited_shape
 
 SCHEMES = {
     "elementwise": ("Elementwise", "Interpolate the matrices entry by entry; maps that turn become flat on the way"),
@@ -164,7 +165,15 @@ class IFSMorphLocusSettings(bpy.types.PropertyGroup):
     image: PointerProperty(
         type=bpy.types.Image, name="Image", description="The picture of the locus", options=STILL, override=LEAF
     )
-    inputs: StringProperty(description="Fingerprint of what the picture shows", options={"HIDDEN"}, override=LEAF)
+    live: BoolProperty(
+        name="Live",
+        description="Keep the picture up to date while maps change: a coarse one at once, the full one after a pause. "
+        "It begins with the first Compute Locus",
+        default=True,
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
 
 
 class IFSMorphPathSettings(bpy.types.PropertyGroup):
@@ -244,6 +253,27 @@ class IFSMorphSettings(bpy.types.PropertyGroup):
         override=LEAF,
         update=redraw,
     )
+    edit_maps: BoolProperty(
+        name="Edit Maps in Viewport",
+        description="Show the maps as triangles whose corners can be dragged in the viewport",
+        default=False,
+        options=STILL,
+        override=LEAF,
+        update=show_edited_shape,
+    )
+    edited_end: EnumProperty(
+        name="Edited Shape",
+        description="Whose maps to show. While (u,v) has no keys it goes to that shape, so that you see what you drag; "
+        "on a keyed path the shape of the current frame stays and follows",
+        items=(
+            ("INITIAL", "Initial", "The shape at the start of the morph"),
+            ("FINAL", "Final", "The shape at the end of the morph"),
+        ),
+        default="INITIAL",
+        options=STILL,
+        override=LEAF,
+        update=show_edited_shape,
+    )
     gap_resolution: IntProperty(
         name="Gap Resolution",
         description="A gap counts from the diameter of the shape divided by this, as if it were drawn this many "
@@ -268,6 +298,7 @@ class IFSMorphLocusPicture(bpy.types.PropertyGroup):
     spacing: FloatProperty(
         name="Spacing", description="Step of u and v from pixel to pixel; zero on other images", options=STILL
     )
+    inputs: StringProperty(description="Fingerprint of what the picture shows", options={"HIDDEN"})
 
 
 CLASSES = (

@@ -14,6 +14,15 @@ STEP_SECONDS = 0.04
 """Shortest time that a timer event works; the core's own steps take about as long again."""
 
 
+_running: list[str] = []
+"""Name of the task that works in the window now, if any."""
+
+
+def is_running() -> bool:
+    """Whether a task works in the window, which needs the file as it is."""
+    return bool(_running)
+
+
 class LongTask:
     """Mixin for operators.
 
@@ -36,6 +45,7 @@ class LongTask:
         if bpy.app.background:
             return self.execute(context)
         self._steps = self.work(context)
+        _running.append(self.bl_idname)
         window_manager = context.window_manager
         window_manager.progress_begin(0, 100)
         self._timer = window_manager.event_timer_add(0.01, window=context.window)
@@ -78,6 +88,7 @@ class LongTask:
         context.workspace.status_text_set(f"{self.bl_label}: {100 * share:.0f} %   (Esc: Cancel)")
 
     def _close(self, context):
+        _running.remove(self.bl_idname)
         window_manager = context.window_manager
         window_manager.event_timer_remove(self._timer)
         window_manager.progress_end()

@@ -30,6 +30,7 @@ CORE = (
     "report",
     "route",
     "curve",
+    "handles",
     "swelling",
     "path",
     # It ends with the path through the morph that it found.

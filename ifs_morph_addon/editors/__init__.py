@@ -1,21 +1,25 @@
-"""What is drawn and dragged in editors, in a Blender with a window only."""
+"""What is drawn in editors and dragged there."""
 
 import bpy
 
-from . import locus_overlay
+from . import locus_handles, locus_overlay, map_editing, map_triangles, path_editing
 
-MODULES = (locus_overlay,)
+OPERATORS = (map_editing, path_editing)
+IN_WINDOW = (map_triangles, locus_overlay, locus_handles)
+"""What needs a window to be drawn in, and is left out of a Blender that has none."""
 
 
 def register():
-    """Register what editors draw, unless there is no window to draw in."""
-    if not bpy.app.background:
-        for module in MODULES:
-            module.register()
+    """Register the operators, and what editors draw."""
+    for module in _modules():
+        module.register()
 
 
 def unregister():
-    """Unregister it."""
-    if not bpy.app.background:
-        for module in reversed(MODULES):
-            module.unregister()
+    """Unregister them."""
+    for module in reversed(_modules()):
+        module.unregister()
+
+
+def _modules():
+    return OPERATORS if bpy.app.background else OPERATORS + IN_WINDOW

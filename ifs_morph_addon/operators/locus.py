@@ -1,59 +1,11 @@
 """Compute the connectedness locus of a morph, and show it in an Image Editor."""
 
 import bpy
-import numpy as np
 
 from ...core.connectedness import Connectedness
-from ...core.ifs import IFSError
-from ...core.locus import Locus, compute_locus_steps
-from ..conversion import locus_fingerprint, morph_of, tolerance
+from .. import locus_picture
 from ..tasks import LongTask
 from .poll import editable_morph, sound_morph
-
-_last: dict[tuple[str, bool], Locus] = {}
-"""The locus computed last, by its fingerprint and whether with gaps: planning needs more of it than its picture."""
-
-
-def locus_steps(settings, gap: bool = True):
-    """Yield the share done and return the locus of an object's morph; at once if it was the last one computed.
-
-    The picture shows how wide the gaps are; planning a path needs the states alone, which take less time.
-    """
-    key = locus_fingerprint(settings)
-    for with_gap in (True, gap):
-        if (key, with_gap) in _last:
-            return _last[key, with_gap]
-    low, high = settings.locus.domain
-    if not low < high:
-        raise IFSError(f"The domain of the locus runs from {low:g} to {high:g}; its end must be above its start.")
-    resolution = settings.locus.resolution
-    locus = yield from compute_locus_steps(morph_of(settings), resolution, tolerance(settings), (low, high), gap=gap)
-    _last.clear()
-    _last[key, gap] = locus
-    return locus
-
-
-def store_locus(owner, locus: Locus) -> None:
-    """Keep the picture of a locus in the file.
-
-    Each locus gets an image of its own, so that undo brings the one before back.
-    """
-    settings = owner.ifs_morph.locus
-    height, width = locus.state.shape
-    before = settings.image
-    image = bpy.data.images.new(f"{owner.name} Locus", width, height, alpha=False)
-    image.pixels.foreach_set(np.ascontiguousarray(locus.picture(), dtype=np.float32).ravel())
-    image.pack()
-    image.ifs_morph_locus.lowest = locus.u[0], locus.v[0]
-    image.ifs_morph_locus.spacing = locus.u[1] - locus.u[0]
-    settings.image = image
-    settings.inputs = locus_fingerprint(owner.ifs_morph)
-    shared = any(other.ifs_morph.locus.image == before for other in bpy.data.objects)
-    if before is not None and before.library is None and not shared:
-        name = before.name
-        before.user_remap(image)
-        bpy.data.images.remove(before)
-        image.name = name
 
 
 class IFSMORPH_OT_compute_locus(LongTask, bpy.types.Operator):
@@ -66,10 +18,8 @@ class IFSMORPH_OT_compute_locus(LongTask, bpy.types.Operator):
     poll = classmethod(sound_morph)
 
     def work(self, context):
-        """Compute, then store."""
-        owner = context.object
-        locus = yield from locus_steps(owner.ifs_morph)
-        store_locus(owner, locus)
+        """Compute, then keep the picture."""
+        locus = yield from locus_picture.compute_steps(context.object)
         self.report(
             {"INFO"}, f"The shape is connected at {100 * locus.share(Connectedness.CONNECTED):.1f} % of the locus"
         )
@@ -115,4 +65,4 @@ def unregister():
     """Unregister the operators and let go of the last locus."""
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
-    _last.clear()
+    locus_picture.forget()

@@ -10,8 +10,8 @@ from ...core.path import METHODS, plan_path_steps
 from ...core.report import check_frames, check_frames_steps
 from .. import fcurves
 from ..conversion import core_name, fit_window, morph_of, path_fingerprint, tolerance
+from ..locus_picture import locus_steps
 from ..tasks import LongTask
-from .locus import locus_steps
 from .poll import editable_morph, sound_morph
 
 LOCUS_SHARE = 0.5

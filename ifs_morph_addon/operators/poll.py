@@ -3,6 +3,11 @@
 from ..conversion import shape_problem
 
 
+def is_changeable(owner) -> bool:
+    """Whether Blender lets an object be edited: not one in a library, nor an override that was not made for it."""
+    return owner.library is None and not (owner.override_library and owner.override_library.is_system_override)
+
+
 def any_morph(cls, context) -> bool:
     """Whether the active object is a morph, were it a linked one."""
     owner = context.object
@@ -16,8 +21,7 @@ def editable_morph(cls, context) -> bool:
     """Whether the active object is a morph that may be changed."""
     if not any_morph(cls, context):
         return False
-    owner = context.object
-    if owner.library is not None or (owner.override_library and owner.override_library.is_system_override):
+    if not is_changeable(context.object):
         cls.poll_message_set("The object is linked from a library; make it local or an editable library override first")
         return False
     return True

@@ -5,6 +5,9 @@ So every morph has the same size in the scene, whatever the units of its maps, a
 
 import numpy as np
 
+WINDOW_OF_UNIT = 1.1
+"""Size of the window of a shape of size one, margins included."""
+
 
 def unit(window) -> float:
     """Length in the plane of the attractor that has length 1 in the object."""
@@ -24,3 +27,18 @@ def in_object(points: np.ndarray, window) -> np.ndarray:
     placed = np.zeros((len(points), 3), dtype=np.float32)
     placed[:, :2] = (points - np.float32(middle(window))) / np.float32(unit(window))
     return placed
+
+
+def in_plane(points: np.ndarray, window) -> np.ndarray:
+    """Points (P, 2) in the plane of the attractor of points (P, 2) or (P, 3) in the object: `in_object` backwards."""
+    left, bottom, right, top = window
+    return np.asarray(points, dtype=float)[:, :2] * unit(window) + ((left + right) / 2, (bottom + top) / 2)
+
+
+def frame_size(window) -> float:
+    """Size of the triangle whose images show the maps: the power of two nearest to that of the window.
+
+    It is one for shapes about as large as the unit square, as most are, and does not change when the window does a
+    little.
+    """
+    return float(2.0 ** np.round(np.log2(unit(window) / WINDOW_OF_UNIT)))

@@ -1,12 +1,12 @@
-"""The sidebar tab, the Add menu and the File menu."""
+"""The sidebar tabs, the Add menu and the File menu."""
 
-from . import files, lists, menus, panels
+from . import files, lists, locus_sidebar, menus, panels, presets
 
-MODULES = (lists, menus, panels, files)
+MODULES = (lists, menus, presets, panels, locus_sidebar, files)
 
 
 def register():
-    """Register lists, menus and panels."""
+    """Register lists, menus, presets and panels."""
     for module in MODULES:
         module.register()
 

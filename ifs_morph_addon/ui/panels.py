@@ -1,15 +1,12 @@
 """The sidebar tab IFS Morph: one panel for each thing that an animator thinks of."""
 
-import textwrap
-
 import bpy
 
-from .. import fcurves, outputs, preparation
-from ..conversion import locus_fingerprint, path_fingerprint, shape_problem
+from .. import fcurves, live, locus_picture, outputs, preparation
+from ..conversion import path_fingerprint, shape_problem
 from .files import draw_file_buttons
-
-CHARACTER_WIDTH = 6.2
-"""Mean width of a letter in the interface font at scale 1, in pixels, for breaking sentences into lines."""
+from .presets import IFSMORPH_PT_output_presets
+from .text import sentence
 
 
 class _Panel:
@@ -37,7 +34,7 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
         """Draw the place in the morph, and what is wrong with it."""
         layout = self.layout
         if preparation.is_running():
-            _sentence(layout, context, preparation.message(), icon="TIME")
+            sentence(layout, context, preparation.message(), icon="TIME")
             layout.progress(factor=preparation.share(), text=f"{100 * preparation.share():.0f} %")
         owner = context.object
         if owner is None or owner.ifs_morph.kind == "NONE":
@@ -53,9 +50,9 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
         column.prop(settings, "swell")
         problem = shape_problem(settings) or outputs.message(owner)
         if problem and not preparation.is_running():
-            _sentence(layout, context, problem, icon="ERROR")
+            sentence(layout, context, problem, icon="ERROR")
         if owner.library is not None:
-            _sentence(
+            sentence(
                 layout,
                 context,
                 "This object is linked from a library and cannot be changed.",
@@ -123,6 +120,27 @@ class IFSMORPH_PT_final(_ShapePanel, bpy.types.Panel):
     shape = "final"
 
 
+class IFSMORPH_PT_edit_maps(_Panel, bpy.types.Panel):
+    """The maps as triangles in the viewport."""
+
+    bl_label = "Edit Maps in Viewport"
+    bl_parent_id = "IFSMORPH_PT_main"
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(context.object.ifs_morph, "edit_maps", text="")
+
+    def draw(self, context):
+        """Draw which shape is edited, and how."""
+        layout = self.layout
+        settings = context.object.ifs_morph
+        layout.active = settings.edit_maps
+        layout.row().prop(settings, "edited_end", expand=True)
+        if settings.edit_maps:
+            text = "Drag a corner to change a map, its middle to move it. Ctrl snaps, Shift is precise."
+            sentence(layout, context, text)
+
+
 class IFSMORPH_PT_interpolation(_Panel, bpy.types.Panel):
     """How one shape becomes the other."""
 
@@ -161,11 +179,26 @@ class IFSMORPH_PT_locus(_Panel, bpy.types.Panel):
         column = layout.column(align=True)
         column.prop(locus, "domain", index=0, text="Domain From")
         column.prop(locus, "domain", index=1, text="To")
+        layout.prop(locus, "live")
         layout.operator("ifs_morph.compute_locus", icon="IMAGE_DATA")
         if locus.image is not None:
             layout.operator("ifs_morph.show_locus", icon="WINDOW")
-            if locus.inputs != locus_fingerprint(settings):
-                _sentence(layout, context, "The locus is out of date: the morph has changed since.", icon="INFO")
+        draw_locus_state(layout, context)
+
+
+def draw_locus_state(layout, context) -> None:
+    """Say if the picture of the locus is a preview, or one of the morph as it was."""
+    owner = context.object
+    locus = owner.ifs_morph.locus
+    if locus.image is None or locus_picture.is_current(owner.ifs_morph):
+        return
+    if not live.shows_preview(owner):
+        text = "The locus is out of date: the morph has changed since."
+    elif locus.resolution > live.MOST_NODES:
+        text = "This is a preview. Compute the locus for the full resolution."
+    else:
+        text = "This is a preview; the full locus follows."
+    sentence(layout, context, text, icon="INFO")
 
 
 class IFSMORPH_PT_path(_Panel, bpy.types.Panel):
@@ -196,11 +229,11 @@ class IFSMORPH_PT_path(_Panel, bpy.types.Panel):
             return
         current = path.inputs == path_fingerprint(settings)
         if not current or not fcurves.has_path(owner):
-            _sentence(layout, context, "The report is out of date: the morph has changed since.", icon="INFO")
+            sentence(layout, context, "The report is out of date: the morph has changed since.", icon="INFO")
         box = layout.box()
         box.active = current
         for line in path.report.splitlines():
-            _sentence(box, context, line)
+            sentence(box, context, line)
 
 
 class IFSMORPH_PT_output(_Panel, bpy.types.Panel):
@@ -208,6 +241,10 @@ class IFSMORPH_PT_output(_Panel, bpy.types.Panel):
 
     bl_label = "Output"
     bl_parent_id = "IFSMORPH_PT_main"
+
+    def draw_header_preset(self, context):
+        """Draw the menu of presets."""
+        IFSMORPH_PT_output_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
         """Draw what the kind of the object needs."""
@@ -279,19 +316,11 @@ def _title(name: str) -> str:
     return name[:1].upper() + name[1:]
 
 
-def _sentence(layout, context, text: str, icon: str = "NONE") -> None:
-    """Draw a sentence in as many lines as the sidebar needs."""
-    width = context.region.width / (CHARACTER_WIDTH * context.preferences.system.ui_scale) - 8
-    column = layout.column(align=True)
-    for k, line in enumerate(textwrap.wrap(text, max(16, int(width)))):
-        blank = "BLANK1" if icon != "NONE" else "NONE"
-        column.label(text=line, icon=blank if k else icon)
-
-
 CLASSES = (
     IFSMORPH_PT_main,
     IFSMORPH_PT_initial,
     IFSMORPH_PT_final,
+    IFSMORPH_PT_edit_maps,
     IFSMORPH_PT_interpolation,
     IFSMORPH_PT_locus,
     IFSMORPH_PT_path,

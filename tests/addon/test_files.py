@@ -45,8 +45,7 @@ def test_locus_and_path_come_back_with_the_file(scene, blend, extension):
     np.testing.assert_array_equal(pixels(owner.ifs_morph.locus.image), before)
     assert owner.ifs_morph.path.report == report
     np.testing.assert_array_equal(extension.ifs_morph_addon.fcurves.sample_path(owner, frames), places)
-    fingerprint = extension.ifs_morph_addon.conversion.locus_fingerprint
-    assert owner.ifs_morph.locus.inputs == fingerprint(owner.ifs_morph)
+    assert extension.ifs_morph_addon.locus_picture.is_current(owner.ifs_morph)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -16,6 +16,7 @@ from core.affine import (
     rotation,
     singular_values,
     spectral_radius,
+    through,
     to_parameters,
     transform,
 )
@@ -43,6 +44,19 @@ def test_invert_undoes(one, point):
     if singular_values(one[:, :2])[1] < 1e-3:
         return
     np.testing.assert_allclose(transform(invert(one), transform(one, point)), point, atol=1e-9)
+
+
+@given(maps, arrays(float, (3, 2), elements=numbers))
+def test_through_finds_the_map_of_three_points(one, corners):
+    sides = corners[1:] - corners[0]
+    if singular_values(sides)[1] < 1e-2:
+        return
+    np.testing.assert_allclose(through(corners, transform(one, corners)), one, atol=1e-7)
+
+
+def test_through_refuses_points_on_a_line():
+    with pytest.raises(np.linalg.LinAlgError):
+        through([(0, 0), (1, 0), (2, 0)], [(0, 0), (1, 0), (0, 1)])
 
 
 @given(linears)

@@ -101,6 +101,17 @@ def test_node_is_the_nearest():
     assert locus.node(-9, 9) == (12, 0)
 
 
+@given(st.integers(2, 40), st.integers(2, 90))
+def test_nearest_nodes_are_the_nearest(own, other):
+    u, v = nodes(own, ((-1, 1), (0, 3)))
+    locus = Locus(u, v, np.zeros((len(v), len(u)), np.uint8), np.zeros((len(v), len(u)), np.float32), 0.1)
+    wanted_u, wanted_v = nodes(other, ((-1, 1), (0, 3)))
+    rows, columns = locus.nearest_nodes(wanted_u, wanted_v)
+    for wanted, axis, found in ((wanted_u, u, columns), (wanted_v, v, rows)):
+        least = np.abs(wanted[:, None] - axis).min(axis=1)
+        np.testing.assert_allclose(np.abs(wanted - axis[found]), least, atol=1e-9)
+
+
 # --- states
 
 
