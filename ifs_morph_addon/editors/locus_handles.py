@@ -53,7 +53,7 @@ class IFSMORPH_GGT_path(bpy.types.GizmoGroup):
     bl_label = "IFS Morph Path"
     bl_space_type = "IMAGE_EDITOR"
     bl_region_type = "WINDOW"
-    bl_options = {"PERSISTENT", "SCALE"}
+    bl_options = {"PERSISTENT"}
 
     @classmethod
     def poll(cls, context):

@@ -75,7 +75,7 @@ class IFSMORPH_GGT_maps(bpy.types.GizmoGroup):
     bl_label = "IFS Morph Maps"
     bl_space_type = "VIEW_3D"
     bl_region_type = "WINDOW"
-    bl_options = {"PERSISTENT", "SCALE"}
+    bl_options = {"PERSISTENT"}
 
     @classmethod
     def poll(cls, context):
