@@ -31,14 +31,13 @@ def in_object(points: np.ndarray, window) -> np.ndarray:
 
 def in_plane(points: np.ndarray, window) -> np.ndarray:
     """Points (P, 2) in the plane of the attractor of points (P, 2) or (P, 3) in the object: `in_object` backwards."""
-    left, bottom, right, top = window
-    return np.asarray(points, dtype=float)[:, :2] * unit(window) + ((left + right) / 2, (bottom + top) / 2)
+    return np.asarray(points, dtype=float)[:, :2] * unit(window) + middle(window)
 
 
 def frame_size(window) -> float:
-    """Size of the triangle whose images show the maps: the power of two nearest to that of the window.
+    """Size of the triangle whose images show the maps: the power of eight nearest to that of the window.
 
-    It is one for shapes about as large as the unit square, as most are, and does not change when the window does a
-    little.
+    It is one for shapes about as large as the unit square, as most are. The steps are wide, since the triangles change
+    with every step, and a drag that makes the window a little larger should not.
     """
-    return float(2.0 ** np.round(np.log2(unit(window) / WINDOW_OF_UNIT)))
+    return float(8.0 ** np.round(np.log2(unit(window) / WINDOW_OF_UNIT) / 3))

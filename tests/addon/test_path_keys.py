@@ -4,6 +4,8 @@ import bpy
 import numpy as np
 import pytest
 
+from core.connectedness import Connectedness
+from core.locus import compute_locus
 from tests.addon.interface import keys, reason, sidebar
 from tests.addon.support import activate, add, show
 
@@ -183,9 +185,19 @@ def test_nothing_to_drag_without_a_morph(owner, scene):
 
 
 @pytest.mark.parametrize(
-    ("place", "sentence"),
-    [((0, 0), "in one piece"), ((0.5, 0.0), "in pieces; the gap is"), ((9, 9), "no shape"), ((1, 1), "in one piece")],
+    ("state", "sentence"), [("CONNECTED", "is in one piece"), ("DISCONNECTED", "in pieces; the gap is")]
 )
-def test_the_state_is_said(owner, place, sentence, extension):
-    owner.ifs_morph.uv = place
-    assert sentence in extension.ifs_morph_addon.conversion.state_sentence(owner.ifs_morph)
+def test_the_state_is_said(owner, state, sentence, extension):
+    conversion = extension.ifs_morph_addon.conversion
+    locus = compute_locus(conversion.morph_of(owner.ifs_morph), 31)
+    row, column = np.argwhere(locus.state == Connectedness[state])[0]
+    owner.ifs_morph.uv = locus.u[column], locus.v[row]
+    assert sentence in conversion.state_sentence(owner.ifs_morph)
+
+
+def test_no_shape_and_no_morph_are_said(owner, extension):
+    say = extension.ifs_morph_addon.conversion.state_sentence
+    owner.ifs_morph.initial.maps[0].scale = 2, 2
+    assert "no shape" in say(owner.ifs_morph)
+    bpy.ops.ifs_morph.map_add(end="FINAL")
+    assert "maps" in say(owner.ifs_morph)

@@ -46,7 +46,9 @@ def test_operators_have_tooltips(extension):
         assert not described.description.endswith("."), described.identifier
         for item in described.properties:
             # Blender's own operator for presets has hidden properties that nobody sees the tooltip of.
-            assert item.description or item.identifier == "rna_type" or item.is_hidden, f"{described.identifier}.{item.identifier}"
+            assert item.description or item.identifier == "rna_type" or item.is_hidden, (
+                f"{described.identifier}.{item.identifier}"
+            )
 
 
 def test_place_is_animatable_and_shapes_are_not(extension):

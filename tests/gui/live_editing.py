@@ -77,7 +77,9 @@ def say(what):
     """Say how long the window did not answer since the last picture, and how long the live locus worked at most."""
     gaps = [later - earlier for earlier, later in pairwise(ticks)]
     longest = f"longest gap {1e3 * max(gaps, default=0):.0f} ms, median {1e3 * float(np.median(gaps or [0])):.0f} ms"
-    print(f"{what}: {longest}; longest step of {len(steps_taken)}: {1e3 * max(steps_taken, default=0):.0f} ms", flush=True)
+    print(
+        f"{what}: {longest}; longest step of {len(steps_taken)}: {1e3 * max(steps_taken, default=0):.0f} ms", flush=True
+    )
     ticks.clear()
     steps_taken.clear()
 
@@ -163,6 +165,9 @@ def steps():
     editor.type = "IMAGE_EDITOR"
     with in_viewport():
         bpy.ops.view3d.view_selected()
+        # Away from the sidebar.
+        bpy.context.region_data.view_distance *= 1.9
+        bpy.context.region_data.view_location.x += 0.6
         bpy.ops.ifs_morph.compute_locus("INVOKE_DEFAULT")
     yield
     while working():
@@ -227,14 +232,15 @@ def steps():
 
     # --- (u,v)
     settings().edit_maps = False
-    for _ in drag(on_locus(settings().uv), on_locus((0.5, 0.75)), halfway="5_dragging_uv"):
+    for _ in drag(on_locus(settings().uv), on_locus((0.5, 0.2)), halfway="5_dragging_uv"):
         yield
-    close(settings().uv, (0.5, 0.75))
+    close(settings().uv, (0.5, 0.2))
     for _ in drag(on_locus(settings().uv), on_locus((0, 0)), cancel=True):
         yield
-    close(settings().uv, (0.5, 0.75))
+    close(settings().uv, (0.5, 0.2))
 
     # --- keys of the path
+    editor.spaces.active.show_region_ui = False
     settings().path.frame_end = 60
     with in_viewport():
         bpy.ops.ifs_morph.plan_path("INVOKE_DEFAULT")
@@ -299,9 +305,6 @@ def steps():
         bpy.ops.ifs_morph.load_shape(end="FINAL", shape="maple leaf")
     settings().output.resolution = 512, 512
     settings().edit_maps = True
-    yield
-    with in_viewport():
-        bpy.ops.view3d.view_selected()
     yield
     for _ in range(100):
         yield
