@@ -12,7 +12,6 @@ import subprocess
 import sys
 import time
 import traceback
-from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 
@@ -98,14 +97,14 @@ def corner(index, name):
     with in_viewport():
         place = part("corners").places(owner)[index, part("corners").NAMES.index(name)]
         x, y = part("editors.map_space").to_region(bpy.context, owner, [place])[0]
-        return int(round(x)) + bpy.context.region.x, int(round(y)) + bpy.context.region.y
+        return round(float(x)) + bpy.context.region.x, round(float(y)) + bpy.context.region.y
 
 
 def on_locus(uv):
     """Pixel of a (u,v) in the window."""
     with within("IMAGE_EDITOR"):
         x, y = part("editors.locus_space").to_region(bpy.context.space_data.image, bpy.context.region, [uv])[0]
-        return int(round(x)) + bpy.context.region.x, int(round(y)) + bpy.context.region.y
+        return round(float(x)) + bpy.context.region.x, round(float(y)) + bpy.context.region.y
 
 
 def mouse(kind, value, at, **modifiers):
@@ -122,8 +121,8 @@ def drag(start, end, count=12, halfway=None, cancel=False, **modifiers):
     mouse("LEFTMOUSE", "PRESS", start, **modifiers)
     yield
     at = start
-    for share in np.linspace(0, 1, count + 1)[1:]:
-        at = tuple(int(round((1 - share) * s + share * e)) for s, e in zip(start, end, strict=True))
+    for share in np.linspace(0, 1, count + 1)[1:].tolist():
+        at = tuple(round((1 - share) * s + share * e) for s, e in zip(start, end, strict=True))
         mouse("MOUSEMOVE", "NOTHING", at, **modifiers)
         yield
         if halfway and share >= 0.5:
