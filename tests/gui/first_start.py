@@ -99,14 +99,17 @@ def steps():
     image = bpy.context.view_layer.objects.active.ifs_morph.output.image
     if cold:
         assert not bpy.ops.ifs_morph.compute_locus.poll()
+        waiting = time.perf_counter()
         while preparation.is_running() and preparation.share() < 0.2:
             yield
+        gap = longest_gap(waiting, time.perf_counter())
         picture("1_preparing")
-        shown = time.perf_counter()
+        waiting = time.perf_counter()
         while preparation.is_running():
             yield
         over = time.perf_counter()
-        print(f"prepared in {over - enabled:.1f} s; longest gap between ticks {longest_gap(shown, over):.3f} s")
+        gap = max(gap, longest_gap(waiting, over))
+        print(f"prepared in {over - enabled:.1f} s; longest gap between ticks meanwhile {gap:.3f} s")
     yield from pause(3)
     print(f"longest gap after that {longest_gap(over if cold else added, time.perf_counter()):.2f} s")
     assert 0.05 < covered(image) < 0.5, "the fractal is not in the picture"
