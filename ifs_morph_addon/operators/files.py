@@ -67,26 +67,60 @@ def _file(path: str, changed: int):
     return read_file(path)
 
 
-class _Choice:
-    """One of several entries, by name: the first one unless a name is given."""
+def _picked(properties) -> list[Path]:
+    """Files that were picked in the file browser or dropped."""
+    if properties.directory and any(file.name for file in properties.files):
+        return [Path(properties.directory, file.name) for file in properties.files]
+    return [Path(properties.filepath)] if properties.filepath else []
 
-    entry: bpy.props.StringProperty(
+
+def _read_picked(properties):
+    """Usable entries of all picked files by name, and problems; raises FormatError."""
+    entries, problems = [], []
+    for path in _picked(properties):
+        try:
+            changed = path.stat().st_mtime_ns
+        except (OSError, ValueError):
+            changed = 0  # Reading it will say what is wrong.
+        found = _file(str(path), changed)
+        entries += found.entries
+        problems += found.problems
+    return _usable(entries, problems)
+
+
+def _read_clipboard(properties):
+    """Usable entries of the clipboard by name, and problems; raises FormatError."""
+    try:
+        found = read_text(clipboard(), "Pasted")
+    except FormatError as error:
+        raise FormatError(f"The clipboard has no shape. {error}") from error
+    return _usable(found.entries, found.problems)
+
+
+def _names(read, properties) -> list[str]:
+    """Names to choose from; none while there is nothing to read."""
+    try:
+        return list(read(properties)[0])
+    except FormatError:
+        return []
+
+
+def _entry_property(read):
+    """A name to be chosen; Blender asks for the choices with an operator's properties, not with the operator."""
+    return bpy.props.StringProperty(
         name="Shape",
-        description="Which shape of the file to take; the first one if empty",
-        search=lambda self, context, text: self.names(),
+        description="Which of several shapes to take; the first one if empty",
+        search=lambda properties, context, text: _names(read, properties),
         options={"SKIP_SAVE"},
     )
 
-    def names(self):
-        """Names to choose from; none while there is nothing to read."""
-        try:
-            return list(self.read()[0])
-        except FormatError:
-            return []
+
+class _Choice:
+    """Takes one of several entries: the first one unless `entry` names another."""
 
     def chosen(self):
         """Return the entry with the name it goes by, and all problems; raises FormatError."""
-        usable, problems = self.read()
+        usable, problems = self.read(self)
         if not usable and not problems:
             raise FormatError("Choose a file of shapes first.")
         if not usable:
@@ -111,7 +145,7 @@ class _Choice:
         layout.use_property_split = True
         layout.use_property_decorate = False
         self.draw_more(layout, context)
-        count = len(self.names())
+        count = len(_names(self.read, self))
         if count:
             layout.prop(self, "entry", text="Shape" if count == 1 else f"Shape (1 of {count})")
 
@@ -145,30 +179,14 @@ class IFSMORPH_OT_import_shapes(_Choice, ImportHelper, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    def paths(self) -> list[Path]:
-        """Files that were picked or dropped."""
-        if self.directory and self.files and any(file.name for file in self.files):
-            return [Path(self.directory, file.name) for file in self.files]
-        return [Path(self.filepath)] if self.filepath else []
-
-    def read(self):
-        """Usable entries of all files by name, and problems; raises FormatError."""
-        entries, problems = [], []
-        for path in self.paths():
-            try:
-                changed = path.stat().st_mtime_ns
-            except (OSError, ValueError):
-                changed = 0  # Reading it will say what is wrong.
-            found = _file(str(path), changed)
-            entries += found.entries
-            problems += found.problems
-        return _usable(entries, problems)
+    entry: _entry_property(_read_picked)
+    read = staticmethod(_read_picked)
 
     def invoke(self, context, event):
         """Ask for a file, or for what to do with those that were dropped."""
         if not self.properties.is_property_set("target"):
             self.target = "FINAL" if editable_morph(type(self), context) else "IMAGE"
-        if self.paths():
+        if _picked(self):
             return self.ask(context)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
@@ -181,7 +199,7 @@ class IFSMORPH_OT_import_shapes(_Choice, ImportHelper, bpy.types.Operator):
         """Set the shape, or add an object that has it at both ends."""
         try:
             name, entry, problems = self.chosen()
-            if not self.entry and self.options.is_invoke and len(self.names()) > 1:
+            if not self.entry and self.options.is_invoke and len(_names(self.read, self)) > 1:
                 return self._ask_again()
             owner, shapes = self._owner(context, name)
             for shape in shapes:
@@ -237,20 +255,14 @@ class IFSMORPH_OT_paste_shape(_Choice, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     end: bpy.props.EnumProperty(name="End", description="Which shape to replace", items=ENDS)
+    entry: _entry_property(_read_clipboard)
+    read = staticmethod(_read_clipboard)
 
     poll = classmethod(editable_morph)
 
-    def read(self):
-        """Usable entries of the clipboard by name, and problems; raises FormatError."""
-        try:
-            found = read_text(clipboard(), "Pasted")
-        except FormatError as error:
-            raise FormatError(f"The clipboard has no shape. {error}") from error
-        return _usable(found.entries, found.problems)
-
     def invoke(self, context, event):
         """Ask which shape to take if there are several."""
-        if len(self.names()) > 1:
+        if len(_names(self.read, self)) > 1:
             return self.ask(context)
         return self.execute(context)
 
