@@ -72,7 +72,9 @@ def _dispatcher(function: Callable, options: dict):
     dispatcher = numba.njit(**options)(function)
     place = folder() if keep else None
     if place is not None:
-        dispatcher._cache = KernelCache(function, str(place), fingerprint(function.__module__.rpartition(".")[2]))
+        dispatcher._cache = KernelCache(
+            function, str(place), fingerprint(function.__module__.removeprefix(f"{__package__}."))
+        )
     return dispatcher
 
 
@@ -116,10 +118,16 @@ def fingerprint(module: str) -> str:
 def _imported(module: str) -> frozenset[str]:
     """A module and those that it imports, directly or not; all imports of modules with kernels are at line starts."""
     text = _source(module).decode("utf-8")
-    names = {name for line in re.findall(r"^from \. import ([\w, ]+)", text, re.MULTILINE) for name in line.split(", ")}
-    names.update(re.findall(r"^from \.(\w+) import", text, re.MULTILINE))
-    return frozenset({module}).union(*(_imported(name) for name in names if (SOURCES / f"{name}.py").exists()))
+    names = set()
+    for dots, name, imported in re.findall(r"^from (\.+)(\w*) import ([\w, ]*)", text, re.MULTILINE):
+        package = module.split(".")[: -len(dots)]
+        names.update(".".join([*package, part]) for part in ([name] if name else imported.split(", ")))
+    return frozenset({module}).union(*(_imported(name) for name in names if _path(name).exists()))
 
 
 def _source(module: str) -> bytes:
-    return (SOURCES / f"{module}.py").read_bytes()
+    return _path(module).read_bytes()
+
+
+def _path(module: str) -> Path:
+    return SOURCES.joinpath(*module.split(".")).with_suffix(".py")

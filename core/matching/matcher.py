@@ -24,7 +24,7 @@ from .scoring import MEAN, WORST
 from .search import GOOD, search_steps
 from .symmetry import symmetries
 
-BUDGET = 300_000
+BUDGET = 600_000
 """Work of the search, in shapes decided times their pairs of maps: a few seconds for shapes that are hard to match."""
 
 ROUNDS = 8
@@ -191,7 +191,9 @@ def match_steps(
     tops: list[tuple[float, int, Candidate]] = []
     for k, problem in enumerate(searches):
         start, share = 0.1 + 0.6 * k / len(searches), 0.6 / len(searches)
-        verifying = _verified_steps(problem, frames, budget // len(searches))
+        # Half of what is left, and the last one all of it: the first is the simplest, and most often enough.
+        left = budget - sum(other.work for other in searches)
+        verifying = _verified_steps(problem, frames, left if problem is searches[-1] else left // 2)
         verified = yield from parallel.part(verifying, start, start + share)
         tops += [(cost, k, candidate) for cost, candidate in verified]
         if verified[0][0] < GOOD and verified[0][1].spotless:

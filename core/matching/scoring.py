@@ -10,11 +10,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from .. import parallel
 from ..affine import determinant, polar, singular_values
-from ..decision import CONNECTED, decide_column
+from ..decision import CONNECTED, decide_drift, empty_desk
+from ..kernels import njit
 from ..morph import SINGULAR, SWOLLEN, TIE
 
 LEVELS = np.array([0.0, 1, 2, 3, 4, 6, 8, 11, 14, 18, 24, 32, 48, 64]) / 64
@@ -162,7 +162,9 @@ def _score(
     swells = np.full((count, samples.shape[0]), np.nan)
     start, turn, sign = np.empty(maps), np.empty(maps), np.empty((maps, 2))
     ends = np.empty((maps, 2, 3))
-    linear, translation = np.empty((maps, 4)), np.empty((1, maps, 2))
+    linear, translation = np.empty((maps, 4)), np.empty((maps, 2))
+    desk, drift, along = empty_desk(maps), np.zeros((maps, 2)), np.zeros(1)
+    state, gap, labels = np.empty(1, np.uint8), np.empty((1, 2)), np.empty((1, maps), np.int64)
     work = 0
     for candidate in range(count):
         for k in range(maps):
@@ -189,7 +191,7 @@ def _score(
             at = samples[sample]
             for k in range(maps):
                 i, j = rows[candidate, 0, k], rows[candidate, 1, k]
-                translation[0, k] = (1 - at) * first_translation[i] + at * last_translation[j]
+                translation[k] = (1 - at) * first_translation[i] + at * last_translation[j]
             # The most swell that keeps the score within the bound.
             most = LEVELS.shape[0]
             while most >= 0:
@@ -202,7 +204,8 @@ def _score(
             while low < high and level < LEVELS.shape[0]:
                 _linear_parts(start, turn, sign, ends, at, LEVELS[level], linear)
                 work += 1
-                if decide_column(linear, translation, tolerance, False)[0][0] == CONNECTED:
+                decide_drift(desk, linear, translation, drift, along, tolerance, False, state, gap, labels)
+                if state[0] == CONNECTED:
                     high = level
                 else:
                     low = level + 1

@@ -6,10 +6,10 @@ If g is one, ``w o g`` may take the place of any map w: the attractor stays, but
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ..affine import determinant, rotation
 from ..ifs import IFS
+from ..kernels import njit
 
 DEGREE = 12
 """Of the moments compared: those up to it tell turns of up to as many folds."""
