@@ -12,7 +12,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from . import chaos, drawing
+from . import chaos, drawing, spreading
 from .ifs import IFS, Contractivity, IFSError
 from .pieces import LARGEST_GRID, measures, outlines
 from .words import LETTER, WORD_MASS, cumulated, cut_dimensions, cut_words, unit_maps
@@ -47,8 +47,9 @@ FIXED_GROWTH = 3.0
 would be far smaller than need be. Each frame is cut by itself then."""
 
 GROWTH_LIMIT = 12.0
-"""Attractors whose words multiply by a higher exponent are left to the chaos game. One of its points costs as much as
-six of a set, but such attractors overlap themselves so often that sets are no gain."""
+"""Attractors whose words multiply by a higher exponent are not cut into words, for those overlap so often that sets of
+points are no gain. Their density is left to the chaos game, of which a point costs as much as six of a set, and their
+set to `spreading`; where a window shows so small a part that spreading is too coarse, the chaos game adds to it."""
 
 MOST_ZOOM = 2.0**40
 """Radius of an attractor in pixels, at most: beyond, 64 bit floats would no longer tell its pieces apart."""
@@ -139,7 +140,7 @@ def render(
         _draw(canvas, root, maps, norms, weights, labels, growth, dimension, samples, threads)
     elif mode == "density":
         chaos.deposit(canvas, root, maps, weights, max(samples, CHAOS_POINTS), TOTAL_MASS, threads)
-    else:
+    elif not spreading.mark(canvas, root, maps, labels):
         chaos.mark(canvas, root, maps, weights, labels, max(samples, CHAOS_POINTS), threads)
     return canvas.astype(dtype, copy=False) if mode == "set" else canvas
 

@@ -38,6 +38,7 @@ CORE = (
     "words",
     "pieces",
     "chaos",
+    "spreading",
     "drawing",
     "cloud",
     "raster",
