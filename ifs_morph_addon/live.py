@@ -100,6 +100,9 @@ class Follower:
 
     def _preview(self):
         locus = yield from _timed(locus_picture.coarse_locus_steps(self.owner.ifs_morph, PREVIEW_NODES))
+        # Another step, for both take their time where the picture is large.
+        locus_picture.writable_picture(self.owner)
+        yield INTERVAL
         image, u, v = locus_picture.writable_picture(self.owner)
         rows, columns = locus.nearest_nodes(u, v)
         locus_picture.show(image, locus.picture()[rows][:, columns])
