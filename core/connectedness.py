@@ -12,8 +12,9 @@ from enum import IntEnum
 
 import numpy as np
 
-from . import decision
+from . import states
 from .affine import compose
+from .decision import decide_frames
 from .ifs import IFS, Contractivity
 from .kernels import njit
 
@@ -21,10 +22,10 @@ from .kernels import njit
 class Connectedness(IntEnum):
     """State of an attractor; also the values of a locus."""
 
-    CONNECTED = decision.CONNECTED
-    DISCONNECTED = decision.DISCONNECTED
-    UNDECIDED = decision.UNDECIDED
-    NO_ATTRACTOR = decision.NO_ATTRACTOR
+    CONNECTED = states.CONNECTED
+    DISCONNECTED = states.DISCONNECTED
+    UNDECIDED = states.UNDECIDED
+    NO_ATTRACTOR = states.NO_ATTRACTOR
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +67,8 @@ def connectedness(ifs: IFS, tolerance: float = 1 / 300) -> Verdict:
         search ran out, which happens to heavily overlapping, flat maps. NO_ATTRACTOR: certain.
     """
     linear = np.ascontiguousarray(ifs.linear).reshape(-1, 4)
-    state, gap, labels = decision.decide_frames(linear[None], ifs.translation[None].copy(), float(tolerance), True)
+    translation = ifs.translation[None].copy()
+    state, gap, labels = decide_frames(linear[None], translation, ifs.follows[None], float(tolerance), True)
     return Verdict(Connectedness(state[0]), (float(gap[0, 0]), float(gap[0, 1])), labels[0])
 
 

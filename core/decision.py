@@ -12,22 +12,20 @@ from collections import namedtuple
 import numpy as np
 
 from . import enclosure
-from .enclosure import enclosing_disc, shrinking_words
+from .enclosure import enclosing_disc, mean_fixed_point, shrinking_words
 from .gap import empty_search, measure_gap
 from .kernels import njit
-from .overlap import MEET, SLACK, UNKNOWN, join, pair_test, surely_one_piece
+from .overlap import BUDGET, MEET, SLACK, UNKNOWN, join, pair_test, surely_one_piece
 from .polygon import directions_seen, shrink_polygon
+from .recurrent import decide_recurrent
+from .states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
 from .tree import CAPACITY, NORM, View, center, empty_tree, plant
-
-CONNECTED, DISCONNECTED, UNDECIDED, NO_ATTRACTOR = 0, 1, 2, 3
-"""States of an attractor, the values of `connectedness.Connectedness`."""
 
 POINT = 1e-12
 """An attractor this small beside its distance from the origin is one point: what is left is rounding."""
 
 DISC_BUDGET = 256
-POLYGON_BUDGET = 4000
-"""Pairs of pieces looked at in the first stage, which knows discs only, and in the second."""
+"""Pairs of pieces looked at in the first stage, which knows discs only; `overlap.BUDGET` in the second."""
 
 STACK = 4096
 """Pairs of pieces held at once by the pair test."""
@@ -61,7 +59,7 @@ def empty_desk(count):
 
 
 @njit(nogil=True, cache=True)
-def decide(desk, linear, areas, seen, view, tolerance, labels):
+def decide(desk, linear, follows, areas, seen, view, tolerance, labels):
     """State of one attractor, and in `labels` (N,) the component that each attractorlet is known to belong to.
 
     An attractor is connected if and only if the overlap graph of its attractorlets is (Hata 1985; Burch & Hart 1997,
@@ -95,8 +93,10 @@ def decide(desk, linear, areas, seen, view, tolerance, labels):
             i, j = left[pair], right[pair]
             if labels[i] == labels[j]:
                 continue
-            budget = DISC_BUDGET if stage == 0 else POLYGON_BUDGET
-            outcome = pair_test(tree, count, view, i, j, tolerance, corners, budget, desk.first, desk.second, desk.key)
+            budget = DISC_BUDGET if stage == 0 else BUDGET
+            outcome = pair_test(
+                tree, follows, view, i, j, tolerance, corners, budget, desk.first, desk.second, desk.key
+            )
             if outcome == MEET:
                 join(labels, i, j)
                 if surely_one_piece(labels, areas):
@@ -135,7 +135,7 @@ def find_points(desk, linear):
 
 
 @njit(nogil=True, cache=True)
-def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, state, gap, labels):
+def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap, state, gap, labels):
     """Decide attractors that share their linear parts, as those of one u do; arguments as in `decide_column`.
 
     `state` (V,), `gap` (V, 2) and `labels` (V, N) are written.
@@ -145,21 +145,29 @@ def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, state, 
         gap[node, 0] = gap[node, 1] = np.nan
         for i in range(count):
             labels[node, i] = i
-    outcome, parent, letter, product, size, limit = shrinking_words(linear)
-    areas = np.abs(linear[:, 0] * linear[:, 3] - linear[:, 1] * linear[:, 2])
+    outcome, parent, letter, product, size, limit = shrinking_words(linear, follows)
     if outcome != enclosure.COVERED:
         for node in range(nodes):
             state[node] = NO_ATTRACTOR if outcome == enclosure.NO_ATTRACTOR else UNDECIDED
         return
+    recurrent = False
+    for i in range(count):
+        for k in range(count):
+            recurrent |= not follows[i, k]
+    areas = np.zeros(count)
+    if not recurrent:
+        for i in range(count):
+            areas[i] = abs(linear[i, 0] * linear[i, 3] - linear[i, 1] * linear[i, 2])
     if nodes > 0 and surely_one_piece(labels[0], areas):
         for node in range(nodes):
-            state[node], gap[node, 0], gap[node, 1] = CONNECTED, 0.0, 0.0
-            for i in range(count):
-                labels[node, i] = 0
+            set_whole(node, 0.0, state, gap, labels)
         return
     seen = directions_seen(linear, DIRECTIONS)
     moved, translation = np.empty((count, 2)), np.empty((count, 2))
-    origin_x, origin_y = mean_fixed_point(linear, start, drift, along[nodes // 2])
+    for i in range(count):
+        for axis in range(2):
+            translation[i, axis] = start[i, axis] + along[nodes // 2] * drift[i, axis]
+    origin_x, origin_y = mean_fixed_point(linear, translation)
     for i in range(count):
         # About an origin close by, so that a shape far away is as precise as any.
         moved[i, 0] = start[i, 0] + linear[i, 0] * origin_x + linear[i, 1] * origin_y - origin_x
@@ -167,50 +175,45 @@ def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, state, 
     tree = desk.tree
     plant(tree, linear, moved, drift)
     for node in range(nodes):
-        largest = abs(origin_x) + abs(origin_y)
         for i in range(count):
-            translation[i, 0] = moved[i, 0] + along[node] * drift[i, 0]
-            translation[i, 1] = moved[i, 1] + along[node] * drift[i, 1]
-            largest = max(largest, abs(translation[i, 0]) + abs(translation[i, 1]))
+            for axis in range(2):
+                translation[i, axis] = moved[i, axis] + along[node] * drift[i, axis]
         x, y, radius = enclosing_disc(linear, translation, parent, letter, product, size, limit)
         if radius <= POINT * (abs(origin_x + x) + abs(origin_y + y)):
-            state[node], gap[node, 0], gap[node, 1] = CONNECTED, 0.0, 0.0
-            for i in range(count):
-                labels[node, i] = 0
+            set_whole(node, 0.0, state, gap, labels)
             continue
-        if tree.used[0] > CAPACITY // 2:
-            plant(tree, linear, moved, drift)
         view = View(x, y, along[node], radius, SLACK * max(radius, abs(x) + abs(y)))
-        state[node] = decide(desk, linear, areas, seen, view, tolerance, labels[node])
+        if recurrent:
+            state[node], low, high = decide_recurrent(
+                desk, linear, moved, drift, follows, view, tolerance, with_gap, labels[node]
+            )
+        else:
+            if tree.used[0] > CAPACITY // 2:
+                plant(tree, linear, moved, drift)
+            state[node] = decide(desk, linear, follows, areas, seen, view, tolerance, labels[node])
+            low = high = 0.0
+            if state[node] != CONNECTED and with_gap:
+                find_polygon(desk, linear, seen, view)
+                find_points(desk, linear)
+                known = labels[node].copy()
+                low, high = measure_gap(tree, follows, view, tolerance, desk.corners, desk.points, known, desk.search)
         if state[node] == CONNECTED:
-            gap[node, 0], gap[node, 1] = 0.0, tolerance
-            for i in range(count):
-                labels[node, i] = 0
+            set_whole(node, tolerance, state, gap, labels)
         elif with_gap:
-            find_polygon(desk, linear, seen, view)
-            find_points(desk, linear)
-            known = labels[node].copy()
-            low, high = measure_gap(tree, count, view, tolerance, desk.corners, desk.points, known, desk.search)
-            high = max(high, tolerance * radius) / (2 * radius)
             gap[node, 0] = max(low / radius, SLACK) / 2 if state[node] == DISCONNECTED else 0.0
-            gap[node, 1] = max(high, gap[node, 0])
+            gap[node, 1] = max(high / (2 * radius), tolerance / 2, gap[node, 0])
 
 
 @njit(nogil=True, cache=True)
-def mean_fixed_point(linear, start, drift, along):
-    """Mean of the fixed points of the maps."""
-    x = y = 0.0
-    for i in range(linear.shape[0]):
-        a, b, c, d = 1 - linear[i, 0], -linear[i, 1], -linear[i, 2], 1 - linear[i, 3]
-        det = (a * d - b * c) * linear.shape[0]
-        e, f = start[i, 0] + along * drift[i, 0], start[i, 1] + along * drift[i, 1]
-        x += (d * e - b * f) / det
-        y += (a * f - c * e) / det
-    return x, y
+def set_whole(node, widest, state, gap, labels):
+    """Write that an attractor is in one piece."""
+    state[node], gap[node, 0], gap[node, 1] = CONNECTED, 0.0, widest
+    for i in range(labels.shape[1]):
+        labels[node, i] = 0
 
 
 @njit(nogil=True, cache=True)
-def decide_column(linear, start, drift, along, tolerance, with_gap):
+def decide_column(linear, start, drift, along, follows, tolerance, with_gap):
     """States of attractors that share their linear parts, as those of one u do.
 
     Parameters
@@ -219,6 +222,8 @@ def decide_column(linear, start, drift, along, tolerance, with_gap):
     start, drift : (N, 2)
     along : (V,)
         The translations of attractor k are ``start + along[k] * drift``.
+    follows : (N, N) bool
+        See `IFS.follows`.
     tolerance : float
         Relative to the enclosing diameter.
     with_gap : bool
@@ -235,13 +240,13 @@ def decide_column(linear, start, drift, along, tolerance, with_gap):
     nodes, count = along.shape[0], linear.shape[0]
     state, gap = np.empty(nodes, np.uint8), np.empty((nodes, 2))
     labels = np.empty((nodes, count), np.int64)
-    decide_drift(empty_desk(count), linear, start, drift, along, tolerance, with_gap, state, gap, labels)
+    decide_drift(empty_desk(count), linear, start, drift, along, follows, tolerance, with_gap, state, gap, labels)
     return state, gap, labels
 
 
 @njit(nogil=True, cache=True)
-def decide_frames(linear, translation, tolerance, with_gap):
-    """States of attractors of any maps (F, N, 4), (F, N, 2), such as the frames of a path; returns as above."""
+def decide_frames(linear, translation, follows, tolerance, with_gap):
+    """States of attractors of any maps (F, N, 4), (F, N, 2), with follows (F, N, N), such as the frames of a path."""
     frames, count = linear.shape[0], linear.shape[1]
     state, gap = np.empty(frames, np.uint8), np.empty((frames, 2))
     labels = np.empty((frames, count), np.int64)
@@ -250,11 +255,21 @@ def decide_frames(linear, translation, tolerance, with_gap):
     for k in range(frames):
         here = slice(k, k + 1)
         decide_drift(
-            desk, linear[k], translation[k], drift, along, tolerance, with_gap, state[here], gap[here], labels[here]
+            desk,
+            linear[k],
+            translation[k],
+            drift,
+            along,
+            follows[k],
+            tolerance,
+            with_gap,
+            state[here],
+            gap[here],
+            labels[here],
         )
     return state, gap, labels
 
 
-def are_connected(linear: np.ndarray, translation: np.ndarray, tolerance: float) -> np.ndarray:
-    """Which of the attractors of maps (F, N, 4), (F, N, 2) are connected at the tolerance, as bools (F,)."""
-    return decide_frames(linear, translation, tolerance, False)[0] == CONNECTED
+def are_connected(linear: np.ndarray, translation: np.ndarray, follows: np.ndarray, tolerance: float) -> np.ndarray:
+    """Which of some attractors (F,) are connected at the tolerance; arguments as in `decide_frames`."""
+    return decide_frames(linear, translation, follows, tolerance, False)[0] == CONNECTED

@@ -49,7 +49,7 @@ def spectral_radius(a, b, c, d):
 
 
 @njit(nogil=True, cache=True)
-def cover(linear, limit, budget):
+def cover(linear, follows, limit, budget):
     """Words, shortest first, until every branch has one of norm at most `limit`.
 
     An attractor exists if and only if the joint spectral radius of the linear parts is below 1, that is, if every long
@@ -58,6 +58,8 @@ def cover(linear, limit, budget):
     Parameters
     ----------
     linear : (N, 4)
+    follows : (N, N) bool
+        follows[i, k]: whether the letter k may come after i, which is inside.
     limit : float
         Below 1.
     budget : int
@@ -80,26 +82,34 @@ def cover(linear, limit, budget):
     capacity = max(budget, count_maps)
     parent = np.empty(capacity, np.int32)
     letter = np.empty(capacity, np.int32)
+    initial = np.empty(capacity, np.int32)
     product = np.empty((capacity, 4))
     size = np.empty(capacity)
     count, head, outcome = count_maps, 0, COVERED
     for i in range(count_maps):
-        parent[i], letter[i] = -1, i
+        parent[i], letter[i], initial[i] = -1, i, i
         for k in range(4):
             product[i, k] = linear[i, k]
         size[i] = norm(linear[i, 0], linear[i, 1], linear[i, 2], linear[i, 3])
     while head < count:
         if size[head] > limit:
             a, b, c, d = product[head, 0], product[head, 1], product[head, 2], product[head, 3]
-            if size[head] >= 1 - SPECTRAL_SLACK and spectral_radius(a, b, c, d) >= 1 - SPECTRAL_SLACK:
+            # Only a word that may come after itself is applied again and again.
+            if (
+                size[head] >= 1 - SPECTRAL_SLACK
+                and follows[letter[head], initial[head]]
+                and spectral_radius(a, b, c, d) >= 1 - SPECTRAL_SLACK
+            ):
                 outcome = NO_ATTRACTOR
                 break
             if count + count_maps > capacity:
                 outcome = UNDECIDED
                 break
             for i in range(count_maps):
+                if not follows[letter[head], i]:
+                    continue
                 p, q, r, s = linear[i, 0], linear[i, 1], linear[i, 2], linear[i, 3]
-                parent[count], letter[count] = head, i
+                parent[count], letter[count], initial[count] = head, i, initial[head]
                 product[count, 0], product[count, 1] = a * p + b * r, a * q + b * s
                 product[count, 2], product[count, 3] = c * p + d * r, c * q + d * s
                 size[count] = norm(product[count, 0], product[count, 1], product[count, 2], product[count, 3])
@@ -109,18 +119,33 @@ def cover(linear, limit, budget):
 
 
 @njit(nogil=True, cache=True)
-def shrinking_words(linear):
+def shrinking_words(linear, follows):
     """The words by which to enclose the attractor: a tight cover where that is short, else any cover.
 
     Returns
     -------
     As `cover`, and the norm that the words of the cover do not exceed.
     """
-    outcome, parent, letter, product, size = cover(linear, TIGHT_NORM, TIGHT_BUDGET)
+    outcome, parent, letter, product, size = cover(linear, follows, TIGHT_NORM, TIGHT_BUDGET)
     if outcome != UNDECIDED:
         return outcome, parent, letter, product, size, TIGHT_NORM
-    outcome, parent, letter, product, size = cover(linear, CONTRACTIVE_NORM, CONTRACTIVITY_BUDGET)
+    outcome, parent, letter, product, size = cover(linear, follows, CONTRACTIVE_NORM, CONTRACTIVITY_BUDGET)
     return outcome, parent, letter, product, size, CONTRACTIVE_NORM
+
+
+@njit(nogil=True, cache=True)
+def mean_fixed_point(linear, translation):
+    """Mean of the fixed points of those of the maps (N, 4), (N, 2) that have one."""
+    x = y = 0.0
+    count = 0
+    for i in range(linear.shape[0]):
+        a, b, c, d = 1 - linear[i, 0], -linear[i, 1], -linear[i, 2], 1 - linear[i, 3]
+        det = a * d - b * c
+        if abs(det) > SPECTRAL_SLACK:
+            x += (d * translation[i, 0] - b * translation[i, 1]) / det
+            y += (a * translation[i, 1] - c * translation[i, 0]) / det
+            count += 1
+    return x / max(count, 1), y / max(count, 1)
 
 
 @njit(nogil=True, cache=True)
@@ -150,12 +175,7 @@ def enclosing_disc(linear, translation, parent, letter, product, size, limit):
             shift[k, 1] = m[2] * e + m[3] * f + shift[parent[k], 1]
         else:
             shift[k, 0], shift[k, 1] = e, f
-    x, y = 0.0, 0.0
-    for i in range(linear.shape[0]):
-        a, b, c, d = 1 - linear[i, 0], -linear[i, 1], -linear[i, 2], 1 - linear[i, 3]
-        det = a * d - b * c
-        x += (d * translation[i, 0] - b * translation[i, 1]) / det / linear.shape[0]
-        y += (a * translation[i, 1] - c * translation[i, 0]) / det / linear.shape[0]
+    x, y = mean_fixed_point(linear, translation)
     best_x, best_y, best = x, y, np.inf
     for step in range(12):
         worst, worst_x, worst_y = 0.0, 0.0, 0.0

@@ -44,7 +44,7 @@ def empty_search(count):
 
 
 @njit(nogil=True, cache=True)
-def measure_gap(tree, count, view, tolerance, corners, points, labels, search):
+def measure_gap(tree, follows, view, tolerance, corners, points, labels, search):
     """Bracket of the gap: the longest edge of the minimum spanning tree over the distances of components.
 
     Kruskal's algorithm on edges that are known by bounds only: one heap holds pairs of pieces of all pairs of
@@ -53,10 +53,10 @@ def measure_gap(tree, count, view, tolerance, corners, points, labels, search):
 
     Parameters
     ----------
-    tree, count, view, tolerance, corners
+    tree, follows, view, tolerance, corners
         As in `pair_test`.
     points : (P, 2)
-        On the attractor, about the centre of its disc.
+        Such that their images lie in every piece, about the centre of the disc; there may be none.
     labels : (N,)
         Components of attractorlets that are known to meet; written over.
     search : Search
@@ -66,6 +66,7 @@ def measure_gap(tree, count, view, tolerance, corners, points, labels, search):
     low, high : float
     """
     word = tree.word
+    count = follows.shape[0]
     used = length = components = 0
     for i in range(count):
         components += labels[i] == i
@@ -91,7 +92,7 @@ def measure_gap(tree, count, view, tolerance, corners, points, labels, search):
         small_x, small_y = center(tree, small, view)
         apart_x, apart_y = small_x - large_x, small_y - large_y
         tie = TIE * view.radius * (word[large, NORM] + word[small, NORM])
-        if not search.tried[pair]:
+        if corners.shape[0] > 0 and not search.tried[pair]:
             search.tried[pair] = True
             bound = polygon_distance(word, large, small, apart_x, apart_y, corners, np.inf, POLYGON_STEPS)
             if bound + tie > search.key[pair]:
@@ -101,15 +102,20 @@ def measure_gap(tree, count, view, tolerance, corners, points, labels, search):
                 sift_up(search.order, search.key, length - 1)
                 continue
         bound = max(0.0, search.key[pair] - tie)
-        most = points_distance(word, large, small, apart_x, apart_y, points)
+        most = math.sqrt(apart_x * apart_x + apart_y * apart_y)
+        most += view.radius * (word[large, NORM] + word[small, NORM])
+        if points.shape[0] > 0:
+            most = min(most, points_distance(word, large, small, apart_x, apart_y, points))
         known = most - bound <= max(tolerance * view.radius, PRECISION * most)
-        child = -1 if known or used + count > search.key.shape[0] else children(tree, count, large)
+        child = end = -1
+        if not known and used + count <= search.key.shape[0]:
+            child, end = children(tree, follows, large)
         if child < 0:
             join(labels, i, j)
             components -= 1
             low, high = max(low, bound - view.slack), max(high, most)
             continue
-        for k in range(child, child + count):
+        for k in range(child, end):
             # The first part takes the place of the whole.
             at = pair if k == child else used
             used += k > child

@@ -43,6 +43,9 @@ class IFS:
         none below a hundredth of their sum.
     name : str
         What to call it in a message or a menu.
+    transitions : (N, N), optional
+        Makes it a *recurrent* IFS (Barnsley, Elton & Hardin 1989): entry [i, j] times weight j is how often map j is
+        applied next after map i, never where it is 0. By default all are 1.
 
     Raises
     ------
@@ -54,6 +57,7 @@ class IFS:
     maps: np.ndarray
     weights: np.ndarray | None = None
     name: str = field(default="")
+    transitions: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         maps = _numbers(self.maps, f"{self._called} maps")
@@ -84,6 +88,8 @@ class IFS:
         if abs(total - 1) > len(weights) * np.finfo(float).eps:
             weights = weights / total
         maps.flags.writeable = weights.flags.writeable = False
+        if self.transitions is not None:
+            object.__setattr__(self, "transitions", _checked_transitions(self.transitions, len(maps), self._called))
         object.__setattr__(self, "maps", maps)
         object.__setattr__(self, "weights", weights)
 
@@ -106,6 +112,18 @@ class IFS:
         """Translations (N, 2)."""
         return self.maps[:, :, 2]
 
+    @property
+    def is_recurrent(self) -> bool:
+        """Whether some map is never applied next after some other."""
+        return self.transitions is not None and not self.transitions.all()
+
+    @cached_property
+    def follows(self) -> np.ndarray:
+        """Which letter may come after which in a word (N, N): follows[i, k] where map i may be applied after map k."""
+        if self.transitions is None:
+            return np.ones((self.count, self.count), dtype=bool)
+        return np.ascontiguousarray(self.transitions.T > 0)
+
     @cached_property
     def norms(self) -> np.ndarray:
         """Lipschitz constants (N,) of the maps."""
@@ -113,7 +131,7 @@ class IFS:
 
     @cached_property
     def _words(self) -> tuple:
-        return shrinking_words(np.ascontiguousarray(self.linear).reshape(-1, 4))
+        return shrinking_words(np.ascontiguousarray(self.linear).reshape(-1, 4), self.follows)
 
     @property
     def contractivity(self) -> Contractivity:
@@ -158,7 +176,7 @@ class IFS:
 
     @property
     def fixed_points(self) -> np.ndarray:
-        """Fixed points (N, 2) of the maps; all lie on the attractor.
+        """Fixed points (N, 2) of the maps; all lie on the attractor, unless it is recurrent.
 
         Raises
         ------
@@ -198,6 +216,24 @@ def _numbers(values: np.ndarray, what: str) -> np.ndarray:
         return np.array(values, dtype=float)
     except (TypeError, ValueError) as error:
         raise IFSError(f"{what} are not an array of numbers of one shape.") from error
+
+
+def _checked_transitions(transitions: np.ndarray, count: int, called: str) -> np.ndarray:
+    transitions = _numbers(transitions, f"{called} transitions")
+    if transitions.shape != (count, count):
+        raise IFSError(
+            f"{called} has {count} maps but transitions of shape {transitions.shape}; give one from each map to each."
+        )
+    _require_finite(transitions, f"{called} transitions of map", "them")
+    for i in range(count):
+        if (transitions[i] < 0).any():
+            raise IFSError(f"{called} a transition of map {i + 1} is negative; use zero or more.")
+        if not transitions[i].any():
+            raise IFSError(f"{called} no map may be applied after map {i + 1}; allow one.")
+        if not transitions[:, i].any():
+            raise IFSError(f"{called} map {i + 1} may not be applied after any map; allow one, or remove the map.")
+    transitions.flags.writeable = False
+    return transitions
 
 
 def _require_finite(values: np.ndarray, what: str, which: str) -> None:

@@ -155,14 +155,16 @@ def compute_locus_steps(
         raise ValueError(f"The tolerance is {tolerance:g}; it must be above 0.")
     u, v = nodes(resolution, domain)
     linear = morph.linear(u[:, None]).reshape(len(u), -1, 4)
-    start, end = morph.translation(0.0), morph.translation(1.0)
+    start = morph.translation(0.0)
+    drift = morph.translation(1.0) - start
+    follows = morph.follows_at(u)
     state = np.empty((len(v), len(u)), dtype=np.uint8)
     low = np.empty((len(v), len(u)), dtype=np.float32)
 
     def fill(chunk: tuple[int, int]) -> None:
         column, first = chunk
         rows = slice(first, first + ROWS)
-        states, gaps, _ = decide_column(linear[column], start, end - start, v[rows], float(tolerance), gap)
+        states, gaps, _ = decide_column(linear[column], start, drift, v[rows], follows[column], float(tolerance), gap)
         state[rows, column], low[rows, column] = states, gaps[:, 0]
 
     chunks = [(column, first) for column in range(len(u)) for first in range(0, len(v), ROWS)]

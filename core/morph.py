@@ -95,6 +95,11 @@ class Morph:
         """N, the number of maps."""
         return self.initial.count
 
+    @property
+    def is_recurrent(self) -> bool:
+        """Whether an end is a recurrent IFS."""
+        return self.initial.is_recurrent or self.final.is_recurrent
+
     def at(self, u: np.ndarray | float, v: np.ndarray | float, swell: np.ndarray | float = 0.0) -> IFS:
         """The IFS at (u,v) (Burch & Hart 1997, Eq. 6).
 
@@ -113,7 +118,9 @@ class Morph:
         """
         linear = np.broadcast_to(self.linear(u, swell), (self.count, 2, 2))
         translation = np.broadcast_to(self.translation(v), (self.count, 2))
-        return IFS(np.concatenate([linear, translation[..., None]], axis=-1), self.weights_at(u))
+        maps = np.concatenate([linear, translation[..., None]], axis=-1)
+        transitions = self.transitions_at(np.mean(u)) if self.is_recurrent else None
+        return IFS(maps, self.weights_at(u), transitions=transitions)
 
     def linear(self, u: np.ndarray | float, swell: np.ndarray | float = 0.0) -> np.ndarray:
         """Linear parts (..., N, 2, 2) for `u` and `swell` that broadcast to (..., N)."""
@@ -147,6 +154,19 @@ class Morph:
         """Weights (N,) at u: interpolated between the ends, held beyond them."""
         along = np.clip(u, 0.0, 1.0)
         return _blend(self.initial.weights, self.final.weights, along)
+
+    def transitions_at(self, u: np.ndarray | float) -> np.ndarray:
+        """Transitions (..., N, N) at u (...): interpolated between the ends, held beyond them.
+
+        So between two ends with different graphs a map may be applied after another where either end allows it.
+        """
+        ones = np.ones((self.count, self.count))
+        start, end = (ones if ifs.transitions is None else ifs.transitions for ifs in (self.initial, self.final))
+        return _blend(start, end, np.clip(u, 0.0, 1.0)[..., None, None])
+
+    def follows_at(self, u: np.ndarray | float) -> np.ndarray:
+        """Which letter may come after which in a word, at u (...): (..., N, N) of bool, see `IFS.follows`."""
+        return np.ascontiguousarray(np.swapaxes(self.transitions_at(u) > 0, -1, -2))
 
 
 def _blend(start: np.ndarray, end: np.ndarray, along: np.ndarray) -> np.ndarray:

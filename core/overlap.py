@@ -18,12 +18,15 @@ MEET, APART, UNKNOWN = 0, 1, 2
 SLACK = 1e-12
 """Rounding allowed, relative to the numbers that are added."""
 
+BUDGET = 4000
+"""Pairs of pieces looked at before a pair is given up."""
+
 POLYGON_STEPS = 4
 """Of Gilbert's algorithm."""
 
 
 @njit(nogil=True, cache=True)
-def pair_test(tree, count, view, i, j, tolerance, corners, budget, first, second, key):
+def pair_test(tree, follows, view, i, j, tolerance, corners, budget, first, second, key):
     """Whether attractorlets i and j meet.
 
     Splits the larger of two pieces into its parts, nearest first, drops pairs that are certainly apart, and stops at a
@@ -32,8 +35,8 @@ def pair_test(tree, count, view, i, j, tolerance, corners, budget, first, second
     Parameters
     ----------
     tree : Tree
-    count : int
-        N, the number of maps.
+    follows : (N, N) bool
+        See `tree.children`.
     view : View
     i, j : int
     tolerance : float
@@ -73,11 +76,11 @@ def pair_test(tree, count, view, i, j, tolerance, corners, budget, first, second
         room = view.radius * (2 * tolerance - word[large, NORM] - small_norm)
         if room >= 0 and key[top] <= room * room:
             return MEET
-        child = children(tree, count, large)
-        if child < 0 or top + count > key.shape[0]:
+        child, end = children(tree, follows, large)
+        if child < 0 or top + end - child > key.shape[0]:
             return UNKNOWN
         base = top
-        for k in range(child, child + count):
+        for k in range(child, end):
             # As `center`, written out: this is where the time goes.
             dx = word[k, A] * x + word[k, B] * y + word[k, START_X] + along * word[k, DRIFT_X] - small_x
             dy = word[k, C] * x + word[k, D] * y + word[k, START_Y] + along * word[k, DRIFT_Y] - small_y

@@ -237,8 +237,7 @@ def _failing_edges(morph: Morph, points: np.ndarray, tolerance: float, samples: 
 
 def _connected(morph: Morph, uv: np.ndarray, tolerance: float) -> np.ndarray:
     """Whether the shape is connected at each of uv (F, 2), without swell."""
-    linear, translation = family(morph, np.column_stack([uv, np.zeros(len(uv))]))
-    return are_connected(linear, translation, tolerance)
+    return are_connected(*family(morph, np.column_stack([uv, np.zeros(len(uv))])), tolerance)
 
 
 def _simplified_steps(

@@ -147,22 +147,25 @@ def check_frames_steps(
     uv_swell = np.asarray(uv_swell, dtype=float).reshape(-1, 3)
     if len(uv_swell) == 0:
         raise ValueError("There are no frames to check.")
-    linear, translation = family(morph, uv_swell)
+    linear, translation, follows = family(morph, uv_swell)
 
     def check(start: int) -> tuple[np.ndarray, np.ndarray]:
         frames = slice(start, start + CHUNK)
-        return decide_frames(linear[frames], translation[frames], float(tolerance), True)[:2]
+        return decide_frames(linear[frames], translation[frames], follows[frames], float(tolerance), True)[:2]
 
     chunks = yield from parallel.steps(check, range(0, len(uv_swell), CHUNK), threads)
     state = np.concatenate([chunk[0] for chunk in chunks])
     return FrameCheck(uv_swell, state, np.concatenate([chunk[1] for chunk in chunks]), float(tolerance))
 
 
-def family(morph: Morph, uv_swell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Linear parts (F, N, 4) and translations (F, N, 2) of a morph at u, v, swell (F, 3), as kernels take them."""
+def family(morph: Morph, uv_swell: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Linear parts (F, N, 4), translations (F, N, 2), and which letters follow which (F, N, N), as kernels take them.
+
+    At u, v and swell (F, 3).
+    """
     u, v, swell = uv_swell.T[..., None]
     linear = np.ascontiguousarray(morph.linear(u, swell)).reshape(len(uv_swell), morph.count, 4)
-    return linear, np.ascontiguousarray(morph.translation(v))
+    return linear, np.ascontiguousarray(morph.translation(v)), morph.follows_at(uv_swell[:, 0])
 
 
 def _sentence(subject: str, check: FrameCheck) -> str:

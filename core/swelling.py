@@ -39,9 +39,9 @@ def least_swell_steps(
 
 def _least(morph: Morph, uv: np.ndarray, start: float, tolerance: float) -> float:
     swells = np.append(start, np.arange(np.floor(start * LEVELS) + 1, LEVELS + 1) / LEVELS)
-    linear, translation = family(morph, np.column_stack([np.full((len(swells), 2), uv), swells]))
+    linear, translation, follows = family(morph, np.column_stack([np.full((len(swells), 2), uv), swells]))
     for k, swell in enumerate(swells):
-        if are_connected(linear[k : k + 1], translation[k : k + 1], tolerance)[0]:
+        if are_connected(linear[k : k + 1], translation[k : k + 1], follows[k : k + 1], tolerance)[0]:
             return float(swell)
     return NEVER
 
@@ -53,13 +53,15 @@ def least_swell_field_steps(
     swells = np.arange(levels + 1) / levels
     linear = np.ascontiguousarray(morph.linear(u[:, None, None], swells[:, None]))
     linear = linear.reshape(len(u), levels + 1, morph.count, 4)
-    start, end = morph.translation(0.0), morph.translation(1.0)
+    start = morph.translation(0.0)
+    drift = morph.translation(1.0) - start
+    follows = morph.follows_at(u)
 
     def column(k: int) -> np.ndarray:
         least = np.full(len(v), NEVER)
         still = np.arange(len(v))
         for level, swell in enumerate(swells):
-            state = decide_column(linear[k, level], start, end - start, v[still], tolerance, False)[0]
+            state = decide_column(linear[k, level], start, drift, v[still], follows[k], tolerance, False)[0]
             least[still[state == Connectedness.CONNECTED]] = swell
             if level == 0:
                 least[still[state == Connectedness.NO_ATTRACTOR]] = np.inf

@@ -20,9 +20,9 @@ CAPACITY = 30_000
 A, B, C, D, START_X, START_Y, DRIFT_X, DRIFT_Y, NORM = range(9)
 """Columns of a word: its linear part, its translation at 0 and what is added to it at 1, its norm."""
 
-Tree = namedtuple("Tree", "word child used")
+Tree = namedtuple("Tree", "word child last used")
 """Words (CAPACITY, 9), those of one letter first; the place of each word's first child (CAPACITY,), which its other
-children follow, or -1; the number of words (1,)."""
+children follow, or -1; its last letter (CAPACITY,); the number of words (1,)."""
 
 View = namedtuple("View", "x y along radius slack")
 """One of the attractors that share a tree: a disc that holds it, where it is on the drift, and the rounding allowed in
@@ -32,7 +32,9 @@ a distance, so that pieces are called apart only when they are."""
 @njit(nogil=True, cache=True)
 def empty_tree(capacity):
     """Room for a tree."""
-    return Tree(np.empty((capacity, 9)), np.empty(capacity, np.int32), np.zeros(1, np.int64))
+    return Tree(
+        np.empty((capacity, 9)), np.empty(capacity, np.int32), np.empty(capacity, np.int32), np.zeros(1, np.int64)
+    )
 
 
 @njit(nogil=True, cache=True)
@@ -40,49 +42,71 @@ def plant(tree, linear, start, drift):
     """Start a tree afresh with the maps (N, 4), (N, 2), (N, 2) as words of one letter."""
     for i in range(linear.shape[0]):
         a, b, c, d = linear[i, 0], linear[i, 1], linear[i, 2], linear[i, 3]
-        set_word(tree, i, a, b, c, d, start[i, 0], start[i, 1], drift[i, 0], drift[i, 1])
+        set_word(tree, i, i, a, b, c, d, start[i, 0], start[i, 1], drift[i, 0], drift[i, 1])
     tree.used[0] = linear.shape[0]
 
 
 @njit(nogil=True, cache=True)
-def set_word(tree, place, a, b, c, d, start_x, start_y, drift_x, drift_y):
+def set_word(tree, place, last, a, b, c, d, start_x, start_y, drift_x, drift_y):
     """Write a word without children."""
     word = tree.word
     word[place, A], word[place, B], word[place, C], word[place, D] = a, b, c, d
     word[place, START_X], word[place, START_Y] = start_x, start_y
     word[place, DRIFT_X], word[place, DRIFT_Y] = drift_x, drift_y
     word[place, NORM] = norm(a, b, c, d)
-    tree.child[place] = -1
+    tree.child[place], tree.last[place] = -1, last
 
 
 @njit(nogil=True, cache=True)
-def children(tree, count, parent):
-    """Place of the first of a word's `count` children, which are made if they are not there; -1 if there is no room."""
+def children(tree, follows, parent):
+    """Places of a word's children, the first and the one after the last; they are made if they are not there.
+
+    Parameters
+    ----------
+    tree : Tree
+    follows : (N, N) bool
+        follows[i, k]: whether the letter k may come after i, as all may but in a recurrent IFS.
+    parent : int
+
+    Returns
+    -------
+    first, end : int
+        -1 twice if there is no room.
+    """
+    count = 0
+    letters = follows.shape[0]
+    last = tree.last[parent]
+    for k in range(letters):
+        count += follows[last, k]
     first = tree.child[parent]
     if first >= 0:
-        return first
+        return first, first + count
     first = tree.used[0]
     word = tree.word
     if first + count > word.shape[0]:
-        return -1
+        return -1, -1
     a, b, c, d = word[parent, A], word[parent, B], word[parent, C], word[parent, D]
-    for k in range(count):
-        p, q, r, s = word[k, A], word[k, B], word[k, C], word[k, D]
-        set_word(
-            tree,
-            first + k,
-            a * p + b * r,
-            a * q + b * s,
-            c * p + d * r,
-            c * q + d * s,
-            a * word[k, START_X] + b * word[k, START_Y] + word[parent, START_X],
-            c * word[k, START_X] + d * word[k, START_Y] + word[parent, START_Y],
-            a * word[k, DRIFT_X] + b * word[k, DRIFT_Y] + word[parent, DRIFT_X],
-            c * word[k, DRIFT_X] + d * word[k, DRIFT_Y] + word[parent, DRIFT_Y],
-        )
+    place = first
+    for k in range(letters):
+        if follows[last, k]:
+            p, q, r, s = word[k, A], word[k, B], word[k, C], word[k, D]
+            set_word(
+                tree,
+                place,
+                k,
+                a * p + b * r,
+                a * q + b * s,
+                c * p + d * r,
+                c * q + d * s,
+                a * word[k, START_X] + b * word[k, START_Y] + word[parent, START_X],
+                c * word[k, START_X] + d * word[k, START_Y] + word[parent, START_Y],
+                a * word[k, DRIFT_X] + b * word[k, DRIFT_Y] + word[parent, DRIFT_X],
+                c * word[k, DRIFT_X] + d * word[k, DRIFT_Y] + word[parent, DRIFT_Y],
+            )
+            place += 1
     tree.child[parent] = first
-    tree.used[0] = first + count
-    return first
+    tree.used[0] = place
+    return first, place
 
 
 @njit(nogil=True, cache=True)

@@ -24,10 +24,11 @@ def grown(linear, unit, words, drift=None):
     """Return a tree that holds some words, given by their letters, and the places of these."""
     tree = empty_tree(1000)
     plant(tree, linear, np.ascontiguousarray(unit), np.zeros_like(unit) if drift is None else drift)
+    follows = np.ones((len(linear), len(linear)), dtype=bool)
     places = []
     for first, *others in words:
         place = first
         for letter in others:
-            place = children(tree, len(linear), place) + letter
+            place = children(tree, follows, place)[0] + letter
         places.append(place)
     return tree, places

@@ -17,6 +17,15 @@ def rows(ifs):
     return np.ascontiguousarray(ifs.linear).reshape(-1, 4), np.ascontiguousarray(ifs.translation)
 
 
+def every(linear):
+    """All letters may come after all."""
+    return np.ones((len(linear), len(linear)), dtype=bool)
+
+
+def free_cover(linear, limit, budget):
+    return cover(linear, every(linear), limit, budget)
+
+
 @given(seeds, st.floats(-8, 2))
 @settings(max_examples=60)
 def test_norm_and_spectral_radius_are_numpys(seed, exponent):
@@ -36,7 +45,7 @@ def test_norm_and_spectral_radius_are_numpys(seed, exponent):
 @pytest.mark.parametrize("limit", [0.5, 0.9])
 def test_a_cover_holds_one_prefix_of_every_address(name, limit):
     linear, _ = rows(SHAPES[name])
-    outcome, parent, letter, product, size = cover(linear, limit, 20_000)
+    outcome, parent, letter, product, size = free_cover(linear, limit, 20_000)
     assert outcome == enclosure.COVERED
     words = []
     for k in range(len(parent)):
@@ -58,20 +67,20 @@ def test_a_cover_holds_one_prefix_of_every_address(name, limit):
 
 def test_a_cover_gives_up_at_its_budget():
     linear = np.array([[0.99, 0, 0, 0.99], [0, -0.99, 0.99, 0]])
-    assert cover(linear, 0.5, 100)[0] == enclosure.UNDECIDED
-    assert len(cover(linear, 0.5, 100)[1]) <= 100
-    assert cover(linear, 0.9, 10_000)[0] == enclosure.COVERED
+    assert free_cover(linear, 0.5, 100)[0] == enclosure.UNDECIDED
+    assert len(free_cover(linear, 0.5, 100)[1]) <= 100
+    assert free_cover(linear, 0.9, 10_000)[0] == enclosure.COVERED
 
 
 def test_a_budget_below_the_number_of_maps_is_no_harm():
     linear = np.tile([0.3, 0, 0, 0.3], (50, 1))
-    assert cover(linear, 0.5, 3)[0] == enclosure.COVERED
+    assert free_cover(linear, 0.5, 3)[0] == enclosure.COVERED
 
 
 def test_a_word_that_grows_rules_an_attractor_out():
-    assert cover(np.array([[0.0, 2, 0, 0], [0, 0, 2, 0]]), 0.5, 1000)[0] == enclosure.NO_ATTRACTOR
-    assert cover(np.array([[1.0, 0, 0, 0.1]]), 0.5, 1000)[0] == enclosure.NO_ATTRACTOR
-    assert cover(np.array([[0.999, 0, 0, 0.1]]), 0.5, 1000)[0] == enclosure.COVERED
+    assert free_cover(np.array([[0.0, 2, 0, 0], [0, 0, 2, 0]]), 0.5, 1000)[0] == enclosure.NO_ATTRACTOR
+    assert free_cover(np.array([[1.0, 0, 0, 0.1]]), 0.5, 1000)[0] == enclosure.NO_ATTRACTOR
+    assert free_cover(np.array([[0.999, 0, 0, 0.1]]), 0.5, 1000)[0] == enclosure.COVERED
 
 
 def test_any_cover_gives_a_disc_that_holds_the_attractor():
@@ -80,13 +89,30 @@ def test_any_cover_gives_a_disc_that_holds_the_attractor():
         points, _, _ = reference.dense(ifs.maps)
         linear, translation = rows(ifs)
         for limit in (0.3, 0.5, 0.95):
-            outcome, *words = cover(linear, limit, 50_000)
+            outcome, *words = free_cover(linear, limit, 50_000)
             assert outcome == enclosure.COVERED
             x, y, radius = enclosing_disc(linear, translation, *words, limit)
             assert np.linalg.norm(points - (x, y), axis=1).max() <= radius
 
 
 def test_the_tight_cover_is_taken_where_it_is_short():
-    assert shrinking_words(rows(SHAPES["gasket"])[0])[-1] == enclosure.TIGHT_NORM
+    assert shrinking_words(rows(SHAPES["gasket"])[0], np.ones((3, 3), dtype=bool))[-1] == enclosure.TIGHT_NORM
     slow = np.array([[0.95, 0, 0, 0.95], [0, -0.95, 0.95, 0], [0.95, 0, 0, -0.95]])
-    assert shrinking_words(slow)[-1] == enclosure.CONTRACTIVE_NORM
+    assert shrinking_words(slow, every(slow))[-1] == enclosure.CONTRACTIVE_NORM
+
+
+def test_words_of_a_recurrent_ifs_have_only_letters_that_may_come_after_each_other():
+    linear, _ = rows(SHAPES["gasket"])
+    follows = np.array([[1, 1, 0], [0, 1, 1], [1, 0, 1]], dtype=bool)
+    outcome, parent, letter, _, size = cover(linear, follows, 0.1, 20_000)
+    assert outcome == enclosure.COVERED
+    assert all(follows[letter[parent[k]], letter[k]] for k in range(len(parent)) if parent[k] >= 0)
+    assert np.count_nonzero(size <= 0.1) == 3 * 2**3
+
+
+def test_a_map_that_may_not_follow_itself_may_grow():
+    linear = np.array([[1.5, 0, 0, 1.5], [0.2, 0, 0, 0.2]])
+    assert cover(linear, every(linear), 0.5, 1000)[0] == enclosure.NO_ATTRACTOR
+    in_turn = np.array([[0, 1], [1, 0]], dtype=bool)
+    assert cover(linear, in_turn, 0.5, 1000)[0] == enclosure.COVERED
+    assert cover(3 * linear, in_turn, 0.5, 1000)[0] == enclosure.NO_ATTRACTOR

@@ -25,7 +25,9 @@ def outcome_of(linear, unit, i, j, tolerance, corners, budget=4000, stack=decisi
     plant(tree, linear, unit, np.zeros_like(unit))
     room = np.empty(stack, np.int32), np.empty(stack, np.int32), np.empty(stack)
     view = View(0.0, 0.0, 0.0, 1.0, 1e-12)
-    return pair_test(tree, len(linear), view, i, j, tolerance, corners, budget, *room)
+    return pair_test(
+        tree, np.ones((len(linear), len(linear)), dtype=bool), view, i, j, tolerance, corners, budget, *room
+    )
 
 
 @pytest.mark.parametrize("with_polygons", [False, True])
@@ -95,10 +97,12 @@ def test_a_column_is_its_nodes_one_by_one(with_gap):
     random = np.random.default_rng(4)
     start, drift = random.normal(size=(2, 4, 2))
     along = np.linspace(-2, 2, 40)
-    state, gap, labels = decide_column(linear, start, drift, along, 1 / 300, with_gap)
+    state, gap, labels = decide_column(linear, start, drift, along, np.ones((4, 4), dtype=bool), 1 / 300, with_gap)
     assert len(np.unique(state)) > 1
     translations = start + along[:, None, None] * drift
-    frames = decide_frames(np.tile(linear, (40, 1, 1)), translations, 1 / 300, with_gap)
+    frames = decide_frames(
+        np.tile(linear, (40, 1, 1)), translations, np.ones((40, 4, 4), dtype=bool), 1 / 300, with_gap
+    )
     assert np.array_equal(frames[0], state)
     assert np.array_equal(frames[2], labels)
     assert frames[1] == pytest.approx(gap, abs=1e-9, nan_ok=True)

@@ -35,8 +35,13 @@ def test_children_are_made_once_and_only_where_there_is_room():
     linear, unit = unit_maps(random_ifs(1))
     tree = empty_tree(8)
     plant(tree, linear, unit, np.zeros_like(unit))
-    assert children(tree, 3, 1) == children(tree, 3, 1) == 3
+    follows = np.ones((3, 3), dtype=bool)
+    assert children(tree, follows, 1) == children(tree, follows, 1) == (3, 6)
     assert tree.used[0] == 6
-    assert children(tree, 3, 0) == -1
+    assert children(tree, follows, 0) == (-1, -1)
     plant(tree, linear, unit, np.zeros_like(unit))
-    assert children(tree, 3, 0) == 3
+    assert children(tree, follows, 0) == (3, 6)
+    follows[2, 1] = False
+    plant(tree, linear, unit, np.zeros_like(unit))
+    assert children(tree, follows, 2) == (3, 5)
+    assert tree.last[3:5].tolist() == [0, 2]

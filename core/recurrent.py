@@ -1,0 +1,111 @@
+"""Connectedness of recurrent IFSs, in which not every map may come after every other (Barnsley, Elton & Hardin 1989).
+
+Their attractorlets are images of parts of the attractor, not of all of it. So it does not do that the attractorlets
+hang together: each of them must.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .gap import empty_search, measure_gap
+from .kernels import njit
+from .overlap import BUDGET, MEET, UNKNOWN, join, pair_test
+from .states import CONNECTED, DISCONNECTED, UNDECIDED
+from .tree import plant
+
+MOST_VERTICES = 48
+"""Parts that the attractorlets may fall into before the search is given up."""
+
+
+@njit(nogil=True, cache=True)
+def decide_recurrent(desk, linear, start, drift, follows, view, tolerance, with_gap, labels):
+    """State of the attractor of a recurrent IFS, and the bracket of its gap; `labels` (N,) as in `decide`.
+
+    Attractorlet i is ``A_i = w_i(U A_k)`` over the letters k that may follow i. All of them are connected if, for each
+    i, the overlap graph of those A_k is; and then A is, if the overlap graph of all is. Where an A_i falls into parts,
+    these take its place, each a letter of its own, and all is looked at again. The gap is that between attractorlets
+    or such parts; within them there may be wider ones.
+    """
+    count = linear.shape[0]
+    of = np.arange(count)
+    allowed = follows.copy()
+    while True:
+        vertices = of.shape[0]
+        own_linear, own_start, own_drift = np.empty((vertices, 4)), np.empty((vertices, 2)), np.empty((vertices, 2))
+        for v in range(vertices):
+            for k in range(4):
+                own_linear[v, k] = linear[of[v], k]
+            for k in range(2):
+                own_start[v, k], own_drift[v, k] = start[of[v], k], drift[of[v], k]
+        plant(desk.tree, own_linear, own_start, own_drift)
+        meets = np.full((vertices, vertices), -1, np.int8)
+        group = np.arange(vertices)
+        everything = np.ones(vertices, np.bool_)
+        sure = join_meeting(desk, allowed, view, tolerance, meets, everything, group)
+        if vertices == count:
+            for i in range(count):
+                labels[i] = group[i]
+        if group.any():
+            if not sure:
+                return UNDECIDED, 0.0, 2 * view.radius
+            low = high = 0.0
+            if with_gap:
+                none, search = desk.corners[:0], empty_search(vertices)
+                low, high = measure_gap(desk.tree, allowed, view, tolerance, none, none, group, search)
+            return DISCONNECTED, low, high
+        parts = np.ones(vertices, np.int64)
+        member = np.zeros((vertices, vertices), np.int64)
+        for v in range(vertices):
+            for k in range(vertices):
+                group[k] = k
+            if not join_meeting(desk, allowed, view, tolerance, meets, allowed[v], group):
+                return UNDECIDED, 0.0, 2 * view.radius
+            parts[v] = 0
+            for k in range(vertices):
+                if allowed[v, k] and group[k] == k:
+                    for other in range(vertices):
+                        if allowed[v, other] and group[other] == k:
+                            member[v, other] = parts[v]
+                    parts[v] += 1
+        total = parts.sum()
+        if total == vertices:
+            return CONNECTED, 0.0, 0.0
+        if total > MOST_VERTICES:
+            return UNDECIDED, 0.0, 2 * view.radius
+        whole, part = np.empty(total, np.int64), np.empty(total, np.int64)
+        at = 0
+        for v in range(vertices):
+            for p in range(parts[v]):
+                whole[at], part[at] = v, p
+                at += 1
+        finer = np.zeros((total, total), np.bool_)
+        for v in range(total):
+            for k in range(total):
+                finer[v, k] = allowed[whole[v], whole[k]] and member[whole[v], whole[k]] == part[v]
+        of, allowed = of[whole], finer
+
+
+@njit(nogil=True, cache=True)
+def join_meeting(desk, follows, view, tolerance, meets, among, group):
+    """Join the groups (V,) of those `among` (V,) all letters whose pieces meet; whether nothing was left open.
+
+    What is found of pairs is kept in `meets` (V, V), -1 where nothing is known.
+    """
+    count = follows.shape[0]
+    corners = desk.corners[:0]
+    for i in range(count):
+        for j in range(i + 1, count):
+            if not (among[i] and among[j]) or group[i] == group[j]:
+                continue
+            if meets[i, j] < 0:
+                meets[i, j] = pair_test(
+                    desk.tree, follows, view, i, j, tolerance, corners, BUDGET, desk.first, desk.second, desk.key
+                )
+            if meets[i, j] == MEET:
+                join(group, i, j)
+    for i in range(count):
+        for j in range(i + 1, count):
+            if among[i] and among[j] and group[i] != group[j] and meets[i, j] == UNKNOWN:
+                return False
+    return True

@@ -1,0 +1,128 @@
+"""Connectedness of recurrent IFSs, against points of the attractor that are compared one with another."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from core.connectedness import Connectedness, connectedness
+from core.ifs import IFS
+from core.locus import compute_locus
+from core.morph import Morph
+from core.report import check_frames
+from core.shapes import SHAPES
+
+CONNECTED, DISCONNECTED, UNDECIDED = Connectedness.CONNECTED, Connectedness.DISCONNECTED, Connectedness.UNDECIDED
+SQUARE = SHAPES["square"]
+
+
+def points_of(ifs, limit):
+    """Return one point of each piece of at most a size, and the size, both in units of the plane."""
+    center, radius = ifs.enclosing_disc
+    words = [(ifs.maps[i], i) for i in range(ifs.count)]
+    found = []
+    while words:
+        word, last = words.pop()
+        if np.linalg.norm(word[:, :2], 2) <= limit:
+            found.append(word[:, :2] @ center + word[:, 2])
+        else:
+            for k in range(ifs.count):
+                if ifs.transitions[k, last] > 0:
+                    linear = word[:, :2] @ ifs.maps[k][:, :2]
+                    words.append((np.column_stack([linear, word[:, :2] @ ifs.maps[k][:, 2] + word[:, 2]]), k))
+    return np.array(found), limit * radius
+
+
+def pieces_within(points, apart):
+    """Return how many groups of points there are, any two next to each other in a group no further apart than this."""
+    pairs = cKDTree(points).query_pairs(apart, output_type="ndarray")
+    matrix = np.zeros((len(points), len(points)), dtype=bool)
+    matrix[pairs[:, 0], pairs[:, 1]] = True
+    return connected_components(matrix, directed=False)[0]
+
+
+def recurrent(ifs, transitions):
+    return IFS(ifs.maps, ifs.weights, transitions=np.array(transitions, dtype=float))
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(2, 4))
+@settings(max_examples=120, deadline=None)
+def test_verdicts_hold_for_the_points(seed, count):
+    random = np.random.default_rng(seed)
+    linear = random.normal(size=(count, 2, 2))
+    linear *= (random.uniform(0.2, 0.8, count) / np.linalg.norm(linear, 2, axis=(1, 2)))[:, None, None]
+    transitions = (random.random((count, count)) < 0.7) * random.uniform(0.1, 1, (count, count))
+    for i in range(count):
+        transitions[i, (i + 1) % count] = 1.0
+    ifs = IFS(np.concatenate([linear, random.normal(size=(count, 2, 1))], axis=-1), transitions=transitions)
+    tolerance = 1 / 50
+    verdict = connectedness(ifs, tolerance)
+    points, slack = points_of(ifs, 0.06)
+    if len(points) > 4000:
+        points, slack = points_of(ifs, 0.15)
+    diameter = 2 * ifs.enclosing_disc[1]
+    if verdict.state == CONNECTED:
+        assert pieces_within(points, tolerance * diameter + 2 * slack) == 1
+    if verdict.state == DISCONNECTED and verdict.gap[0] * diameter > 2 * slack:
+        assert pieces_within(points, verdict.gap[0] * diameter - 2 * slack) > 1
+
+
+def test_all_transitions_make_no_difference():
+    for name in ("gasket", "terdragon", "Cantor dust"):
+        ifs = SHAPES[name]
+        free, same = connectedness(ifs), connectedness(recurrent(ifs, np.full((ifs.count, ifs.count), 0.5)))
+        assert free.state == same.state
+        assert free.gap == same.gap
+
+
+def test_a_square_less_one_transition_stays_whole_and_less_many_does_not():
+    assert connectedness(recurrent(SQUARE, np.ones((4, 4)) - np.diag([1, 0, 0, 0]))).state == CONNECTED
+    only_itself_or_opposite = np.array([[1, 0, 0, 1], [0, 1, 1, 0], [0, 1, 1, 0], [1, 0, 0, 1]])
+    # Then each quarter is made of its two opposite corners alone: the two diagonals.
+    assert connectedness(recurrent(SQUARE, only_itself_or_opposite)).state != DISCONNECTED
+    in_turn = np.eye(4) + np.eye(4, k=1) + np.eye(4, k=-3)
+    assert connectedness(recurrent(SQUARE, in_turn)).gap[0] > 0
+
+
+def test_attractorlets_that_meet_do_not_do_if_they_are_in_pieces_themselves():
+    """Two copies, each of the same two far apart points' neighbourhoods, that lie on one another."""
+    maps = [[[0.4, 0, 0], [0, 0.4, 0]], [[0.4, 0, 0.6], [0, 0.4, 0]], [[0.4, 0, 0.01], [0, 0.4, 0]]]
+    free = IFS(maps)
+    assert connectedness(free).state == DISCONNECTED
+    bridged = IFS([[[0.5, 0, 0], [0, 0.5, 0]], [[0.5, 0, 0.5], [0, 0.5, 0]]])
+    assert connectedness(bridged).state == CONNECTED
+    # Either half is again a segment; but after the left one only the left may come, so points are left of it.
+    points = recurrent(bridged, [[1, 0], [1, 1]])
+    assert connectedness(points).state == DISCONNECTED
+
+
+def test_a_morph_between_two_graphs_has_both():
+    one = recurrent(SQUARE, np.ones((4, 4)) - np.diag([1, 0, 0, 0]))
+    other = recurrent(SQUARE, np.ones((4, 4)) - np.diag([0, 0, 0, 1]))
+    morph = Morph(one, other)
+    assert np.array_equal(morph.at(0, 0).transitions, one.transitions)
+    assert np.array_equal(morph.at(1, 1).transitions, other.transitions)
+    assert not morph.at(0.5, 0.5).is_recurrent
+    check = check_frames(morph, np.column_stack([np.linspace(0, 1, 5)] * 2 + [np.zeros(5)]))
+    assert (check.state == CONNECTED).all()
+    locus = compute_locus(morph, 13)
+    for u, v in ((0.0, 0.0), (1.0, 1.0), (0.5, -0.5), (-1.0, 2.0)):
+        row, column = locus.node(u, v)
+        assert locus.state[row, column] == connectedness(morph.at(u, v)).state
+
+
+@pytest.mark.parametrize(
+    "transitions, said",
+    [
+        (np.ones((2, 2)), "shape"),
+        (-np.ones((4, 4)), "negative"),
+        (np.diag([1, 1, 1, 0]), "may be applied after map 4"),
+        (np.array([[1, 1, 1, 0]] * 4), "map 4 may not be applied"),
+        (np.full((4, 4), np.nan), "transitions of map 1"),
+    ],
+)
+def test_transitions_that_make_no_sense_are_named(transitions, said):
+    with pytest.raises(ValueError, match=said):
+        recurrent(SQUARE, transitions)
