@@ -8,27 +8,25 @@ from __future__ import annotations
 
 import math
 from collections import namedtuple
+from collections.abc import Generator
 
 import numpy as np
 
 from . import enclosure
-from .enclosure import enclosing_disc, mean_fixed_point, shrinking_words
+from .enclosure import POINT, enclosing_disc, mean_fixed_point, move_origin, shrinking_words
 from .gap import empty_search, measure_gap
 from .kernels import njit
-from .overlap import BUDGET, MEET, SLACK, UNKNOWN, join, pair_test, surely_one_piece
+from .overlap import BUDGET, MEET, SLACK, STACK, UNKNOWN, join, pair_test, surely_one_piece
 from .polygon import directions_seen, shrink_polygon
 from .recurrent import decide_recurrent
 from .states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
 from .tree import CAPACITY, NORM, View, center, empty_tree, plant
 
-POINT = 1e-12
-"""An attractor this small beside its distance from the origin is one point: what is left is rounding."""
-
 DISC_BUDGET = 256
 """Pairs of pieces looked at in the first stage, which knows discs only; `overlap.BUDGET` in the second."""
 
-STACK = 4096
-"""Pairs of pieces held at once by the pair test."""
+WORK = 30_000
+"""Pairs of pieces looked at in one go, a few tens of milliseconds at most."""
 
 DIRECTIONS = 16
 POLYGON_PRECISION = 1e-3
@@ -135,46 +133,49 @@ def find_points(desk, linear):
 
 
 @njit(nogil=True, cache=True)
-def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap, state, gap, labels):
-    """Decide attractors that share their linear parts, as those of one u do; arguments as in `decide_column`.
+def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap, first, state, gap, labels):
+    """Decide some attractors that share their linear parts, from the `first` on; arguments as in `column_steps`.
 
-    `state` (V,), `gap` (V, 2) and `labels` (V, N) are written.
+    Every letter must be allowed to come after every other.
+
+    Stops after `WORK`, so that a caller can look up. `state` (V,), `gap` (V, 2) and `labels` (V, N) are written.
+
+    Returns
+    -------
+    int
+        The first that is left.
     """
     nodes, count = along.shape[0], linear.shape[0]
-    for node in range(nodes):
+    for node in range(first, nodes):
         gap[node, 0] = gap[node, 1] = np.nan
         for i in range(count):
             labels[node, i] = i
     outcome, parent, letter, product, size, limit = shrinking_words(linear, follows)
     if outcome != enclosure.COVERED:
-        for node in range(nodes):
+        for node in range(first, nodes):
             state[node] = NO_ATTRACTOR if outcome == enclosure.NO_ATTRACTOR else UNDECIDED
-        return
-    recurrent = False
+        return nodes
+    areas = np.empty(count)
     for i in range(count):
-        for k in range(count):
-            recurrent |= not follows[i, k]
-    areas = np.zeros(count)
-    if not recurrent:
-        for i in range(count):
-            areas[i] = abs(linear[i, 0] * linear[i, 3] - linear[i, 1] * linear[i, 2])
-    if nodes > 0 and surely_one_piece(labels[0], areas):
-        for node in range(nodes):
+        areas[i] = abs(linear[i, 0] * linear[i, 3] - linear[i, 1] * linear[i, 2])
+    if first < nodes and surely_one_piece(labels[first], areas):
+        for node in range(first, nodes):
             set_whole(node, 0.0, state, gap, labels)
-        return
-    seen = directions_seen(linear, DIRECTIONS)
-    moved, translation = np.empty((count, 2)), np.empty((count, 2))
+        return nodes
+    seen = directions_seen(linear, np.int64(DIRECTIONS))
+    moved, translation, known = np.empty((count, 2)), np.empty((count, 2)), np.empty(count, np.int64)
     for i in range(count):
         for axis in range(2):
             translation[i, axis] = start[i, axis] + along[nodes // 2] * drift[i, axis]
     origin_x, origin_y = mean_fixed_point(linear, translation)
-    for i in range(count):
-        # About an origin close by, so that a shape far away is as precise as any.
-        moved[i, 0] = start[i, 0] + linear[i, 0] * origin_x + linear[i, 1] * origin_y - origin_x
-        moved[i, 1] = start[i, 1] + linear[i, 2] * origin_x + linear[i, 3] * origin_y - origin_y
+    # About an origin close by, so that a shape far away is as precise as any.
+    move_origin(linear, start, origin_x, origin_y, moved)
     tree = desk.tree
     plant(tree, linear, moved, drift)
-    for node in range(nodes):
+    tree.used[1] = 0
+    for node in range(first, nodes):
+        if tree.used[1] > WORK:
+            return node
         for i in range(count):
             for axis in range(2):
                 translation[i, axis] = moved[i, axis] + along[node] * drift[i, axis]
@@ -183,25 +184,20 @@ def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap
             set_whole(node, 0.0, state, gap, labels)
             continue
         view = View(x, y, along[node], radius, SLACK * max(radius, abs(x) + abs(y)))
-        if recurrent:
-            state[node], low, high = decide_recurrent(
-                desk, linear, moved, drift, follows, view, tolerance, with_gap, labels[node]
-            )
-        else:
-            if tree.used[0] > CAPACITY // 2:
-                plant(tree, linear, moved, drift)
-            state[node] = decide(desk, linear, follows, areas, seen, view, tolerance, labels[node])
-            low = high = 0.0
-            if state[node] != CONNECTED and with_gap:
-                find_polygon(desk, linear, seen, view)
-                find_points(desk, linear)
-                known = labels[node].copy()
-                low, high = measure_gap(tree, follows, view, tolerance, desk.corners, desk.points, known, desk.search)
+        if tree.used[0] > CAPACITY // 2:
+            plant(tree, linear, moved, drift)
+        state[node] = decide(desk, linear, follows, areas, seen, view, tolerance, labels[node])
         if state[node] == CONNECTED:
             set_whole(node, tolerance, state, gap, labels)
         elif with_gap:
+            find_polygon(desk, linear, seen, view)
+            find_points(desk, linear)
+            for i in range(count):
+                known[i] = labels[node, i]
+            low, high = measure_gap(tree, follows, view, tolerance, desk.corners, desk.points, known, desk.search)
             gap[node, 0] = max(low / radius, SLACK) / 2 if state[node] == DISCONNECTED else 0.0
             gap[node, 1] = max(high / (2 * radius), tolerance / 2, gap[node, 0])
+    return nodes
 
 
 @njit(nogil=True, cache=True)
@@ -212,9 +208,16 @@ def set_whole(node, widest, state, gap, labels):
         labels[node, i] = 0
 
 
-@njit(nogil=True, cache=True)
-def decide_column(linear, start, drift, along, follows, tolerance, with_gap):
-    """States of attractors that share their linear parts, as those of one u do.
+def column_steps(
+    linear: np.ndarray,
+    start: np.ndarray,
+    drift: np.ndarray,
+    along: np.ndarray,
+    follows: np.ndarray,
+    tolerance: float,
+    with_gap: bool,
+) -> Generator[None, None, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """States of attractors that share their linear parts, as those of one u do, in steps of a few milliseconds.
 
     Parameters
     ----------
@@ -237,21 +240,47 @@ def decide_column(linear, start, drift, along, follows, tolerance, with_gap):
     labels : (V, N) int64
         Components of attractorlets that are known to meet.
     """
-    nodes, count = along.shape[0], linear.shape[0]
-    state, gap = np.empty(nodes, np.uint8), np.empty((nodes, 2))
-    labels = np.empty((nodes, count), np.int64)
-    decide_drift(empty_desk(count), linear, start, drift, along, follows, tolerance, with_gap, state, gap, labels)
+    nodes, count = len(along), len(linear)
+    if not follows.all():
+        translation = start + along[:, None, None] * drift
+        found = []
+        for node in range(nodes):
+            found.append(
+                decide_recurrent(linear[None], translation[node : node + 1], follows[None], tolerance, with_gap)
+            )
+            yield
+        return tuple(np.concatenate(each) for each in zip(*found, strict=True))
+    state, gap, labels = np.empty(nodes, np.uint8), np.empty((nodes, 2)), np.empty((nodes, count), np.int64)
+    family = linear, start, drift, along, follows, float(tolerance), bool(with_gap)
+    desk, done = empty_desk(count), 0
+    while done < nodes:
+        done = decide_drift(desk, *family, done, state, gap, labels)
+        yield
     return state, gap, labels
 
 
+def decide_frames(
+    linear: np.ndarray, translation: np.ndarray, follows: np.ndarray, tolerance: float, with_gap: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """States of attractors of any maps (F, N, 4), (F, N, 2), with follows (F, N, N), such as the frames of a path.
+
+    Returns
+    -------
+    As `column_steps`.
+    """
+    # Two kernels, for few who use the one ever need the other, and compiling takes its time.
+    decide = decide_each if follows.all() else decide_recurrent
+    return decide(linear, translation, follows, float(tolerance), bool(with_gap))
+
+
 @njit(nogil=True, cache=True)
-def decide_frames(linear, translation, follows, tolerance, with_gap):
-    """States of attractors of any maps (F, N, 4), (F, N, 2), with follows (F, N, N), such as the frames of a path."""
+def decide_each(linear, translation, follows, tolerance, with_gap):
+    """`decide_frames` where every letter may come after every other."""
     frames, count = linear.shape[0], linear.shape[1]
     state, gap = np.empty(frames, np.uint8), np.empty((frames, 2))
     labels = np.empty((frames, count), np.int64)
     desk = empty_desk(count)
-    drift, along = np.zeros((count, 2)), np.zeros(1)
+    drift, along, zero = np.zeros((count, 2)), np.zeros(1), np.int64(0)
     for k in range(frames):
         here = slice(k, k + 1)
         decide_drift(
@@ -263,6 +292,7 @@ def decide_frames(linear, translation, follows, tolerance, with_gap):
             follows[k],
             tolerance,
             with_gap,
+            zero,
             state[here],
             gap[here],
             labels[here],

@@ -26,6 +26,9 @@ TIGHT_NORM = 0.5
 TIGHT_BUDGET = 600
 """Words of at most this norm give a disc at most (1 + 0.5) / (1 - 0.5) times too large, mostly far less."""
 
+POINT = 1e-12
+"""An attractor this small beside its distance from the origin is one point: what is left is rounding."""
+
 SPECTRAL_SLACK = 1e-12
 """Rounding allowed when a spectral radius is compared with 1."""
 
@@ -126,10 +129,11 @@ def shrinking_words(linear, follows):
     -------
     As `cover`, and the norm that the words of the cover do not exceed.
     """
-    outcome, parent, letter, product, size = cover(linear, follows, TIGHT_NORM, TIGHT_BUDGET)
+    # Whole numbers that are constants would be compiled in, and `cover` twice.
+    outcome, parent, letter, product, size = cover(linear, follows, TIGHT_NORM, np.int64(TIGHT_BUDGET))
     if outcome != UNDECIDED:
         return outcome, parent, letter, product, size, TIGHT_NORM
-    outcome, parent, letter, product, size = cover(linear, follows, CONTRACTIVE_NORM, CONTRACTIVITY_BUDGET)
+    outcome, parent, letter, product, size = cover(linear, follows, CONTRACTIVE_NORM, np.int64(CONTRACTIVITY_BUDGET))
     return outcome, parent, letter, product, size, CONTRACTIVE_NORM
 
 
@@ -146,6 +150,14 @@ def mean_fixed_point(linear, translation):
             y += (a * translation[i, 1] - c * translation[i, 0]) / det
             count += 1
     return x / max(count, 1), y / max(count, 1)
+
+
+@njit(nogil=True, cache=True)
+def move_origin(linear, translation, x, y, moved):
+    """Write the translations (N, 2) that the maps have about the origin (x, y)."""
+    for i in range(linear.shape[0]):
+        moved[i, 0] = translation[i, 0] + linear[i, 0] * x + linear[i, 1] * y - x
+        moved[i, 1] = translation[i, 1] + linear[i, 2] * x + linear[i, 3] * y - y
 
 
 @njit(nogil=True, cache=True)

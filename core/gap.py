@@ -16,7 +16,7 @@ from .tree import NORM, A, B, C, D, center, children
 PRECISION = 0.05
 """Relative width of the bracket of a distance at which it is known well enough."""
 
-PAIRS = 6000
+PAIRS = 3000
 """Pairs of pieces held at once, beside those that the search starts with."""
 
 TIE = 1e-9
@@ -67,7 +67,7 @@ def measure_gap(tree, follows, view, tolerance, corners, points, labels, search)
     """
     word = tree.word
     count = follows.shape[0]
-    used = length = components = 0
+    used = length = components = np.int64(0)
     for i in range(count):
         components += labels[i] == i
         for j in range(i + 1, count):
@@ -78,6 +78,7 @@ def measure_gap(tree, follows, view, tolerance, corners, points, labels, search)
                 used += 1
     low = high = 0.0
     while components > 1:
+        tree.used[1] += 2
         pair = search.order[0]
         length -= 1
         search.order[0] = search.order[length]
@@ -94,7 +95,7 @@ def measure_gap(tree, follows, view, tolerance, corners, points, labels, search)
         tie = TIE * view.radius * (word[large, NORM] + word[small, NORM])
         if corners.shape[0] > 0 and not search.tried[pair]:
             search.tried[pair] = True
-            bound = polygon_distance(word, large, small, apart_x, apart_y, corners, np.inf, POLYGON_STEPS)
+            bound = polygon_distance(word, large, small, apart_x, apart_y, corners, np.inf, np.int64(POLYGON_STEPS))
             if bound + tie > search.key[pair]:
                 search.key[pair] = bound + tie
                 search.order[length] = pair

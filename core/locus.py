@@ -15,7 +15,7 @@ import numpy as np
 
 from . import parallel
 from .connectedness import Connectedness
-from .decision import decide_column
+from .decision import column_steps
 from .morph import Morph
 
 COLORS = {
@@ -33,9 +33,6 @@ WIDE = 0.25
 PATH_COLOR = (0.95, 0.25, 0.1)
 
 MAX_NODES = 4096
-
-ROWS = 128
-"""Nodes of a column in one chunk of work."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,14 +158,11 @@ def compute_locus_steps(
     state = np.empty((len(v), len(u)), dtype=np.uint8)
     low = np.empty((len(v), len(u)), dtype=np.float32)
 
-    def fill(chunk: tuple[int, int]) -> None:
-        column, first = chunk
-        rows = slice(first, first + ROWS)
-        states, gaps, _ = decide_column(linear[column], start, drift, v[rows], follows[column], float(tolerance), gap)
-        state[rows, column], low[rows, column] = states, gaps[:, 0]
+    def fill(column: int) -> Generator[None, None, None]:
+        found = yield from column_steps(linear[column], start, drift, v, follows[column], tolerance, gap)
+        state[:, column], low[:, column] = found[0], found[1][:, 0]
 
-    chunks = [(column, first) for column in range(len(u)) for first in range(0, len(v), ROWS)]
-    yield from parallel.steps(fill, chunks, threads)
+    yield from parallel.steps(fill, range(len(u)), threads)
     return Locus(u, v, state, low, float(tolerance))
 
 

@@ -21,6 +21,9 @@ SLACK = 1e-12
 BUDGET = 4000
 """Pairs of pieces looked at before a pair is given up."""
 
+STACK = 4096
+"""Pairs of pieces held at once by the pair test."""
+
 POLYGON_STEPS = 4
 """Of Gilbert's algorithm."""
 
@@ -61,6 +64,7 @@ def pair_test(tree, follows, view, i, j, tolerance, corners, budget, first, seco
         if top == 0:
             return APART
         top -= 1
+        tree.used[1] += 1
         large, small = first[top], second[top]
         if word[large, NORM] < word[small, NORM]:
             large, small = small, large
@@ -70,7 +74,7 @@ def pair_test(tree, follows, view, i, j, tolerance, corners, budget, first, seco
             large_x, large_y = center(tree, large, view)
             apart_x, apart_y = small_x - large_x, small_y - large_y
             slack = view.slack
-            if polygon_distance(word, large, small, apart_x, apart_y, corners, slack, POLYGON_STEPS) > slack:
+            if polygon_distance(word, large, small, apart_x, apart_y, corners, slack, np.int64(POLYGON_STEPS)) > slack:
                 continue
         # No two points of the pieces are further apart than their centres and both radii together.
         room = view.radius * (2 * tolerance - word[large, NORM] - small_norm)

@@ -41,7 +41,8 @@ def steps(
     function
         Called once for each chunk. Must release the interpreter lock to gain from threads.
     chunks
-        The arguments, one for each call; each should take well under a tenth of a second.
+        The arguments, one for each call; each should take well under a tenth of a second. Else let the function be a
+        generator that yields wherever it may pause, and returns the result.
     threads
         How many calls may run at once; None for all processors.
 
@@ -58,17 +59,33 @@ def steps(
     workers = min(thread_count(threads), len(chunks))
     results: list[Result] = [None] * len(chunks)
     following = iter(range(len(chunks)))
+    paused: list[tuple[int, Generator]] = []
     done = 0
 
     def work(deadline: float) -> int:
         """Take the next chunk that no other thread has, until the time is up; the number of chunks done."""
         finished = 0
-        for index in following:
-            results[index] = function(chunks[index])
+        while True:
+            try:
+                index, result = paused.pop()
+            except IndexError:
+                index = next(following, None)
+                if index is None:
+                    return finished
+                result = function(chunks[index])
+            while isinstance(result, Generator):
+                try:
+                    next(result)
+                except StopIteration as ended:
+                    result = ended.value
+                    break
+                if time.perf_counter() >= deadline:
+                    paused.append((index, result))
+                    return finished
+            results[index] = result
             finished += 1
             if time.perf_counter() >= deadline:
-                break
-        return finished
+                return finished
 
     while done < len(chunks):
         deadlines = [time.perf_counter() + STEP_SECONDS] * workers

@@ -8,19 +8,58 @@ from __future__ import annotations
 
 import numpy as np
 
+from . import enclosure
+from .enclosure import POINT, enclosing_disc, mean_fixed_point, move_origin, shrinking_words
 from .gap import empty_search, measure_gap
 from .kernels import njit
-from .overlap import BUDGET, MEET, UNKNOWN, join, pair_test
-from .states import CONNECTED, DISCONNECTED, UNDECIDED
-from .tree import plant
+from .overlap import BUDGET, MEET, SLACK, STACK, UNKNOWN, join, pair_test
+from .states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
+from .tree import CAPACITY, View, empty_tree, plant
 
 MOST_VERTICES = 48
 """Parts that the attractorlets may fall into before the search is given up."""
 
 
 @njit(nogil=True, cache=True)
-def decide_recurrent(desk, linear, start, drift, follows, view, tolerance, with_gap, labels):
-    """State of the attractor of a recurrent IFS, and the bracket of its gap; `labels` (N,) as in `decide`.
+def decide_recurrent(linear, translation, follows, tolerance, with_gap):
+    """States of the attractors of recurrent IFSs; arguments and returns as `decision.decide_frames`."""
+    frames, count = linear.shape[0], linear.shape[1]
+    state, gap = np.empty(frames, np.uint8), np.full((frames, 2), np.nan)
+    labels = np.empty((frames, count), np.int64)
+    moved = np.empty((count, 2))
+    room = np.empty(STACK, np.int32), np.empty(STACK, np.int32), np.empty(STACK)
+    tree = empty_tree(np.int64(CAPACITY))
+    for frame in range(frames):
+        for i in range(count):
+            labels[frame, i] = i
+        outcome, parent, letter, product, size, limit = shrinking_words(linear[frame], follows[frame])
+        if outcome != enclosure.COVERED:
+            state[frame] = NO_ATTRACTOR if outcome == enclosure.NO_ATTRACTOR else UNDECIDED
+            continue
+        origin_x, origin_y = mean_fixed_point(linear[frame], translation[frame])
+        move_origin(linear[frame], translation[frame], origin_x, origin_y, moved)
+        x, y, radius = enclosing_disc(linear[frame], moved, parent, letter, product, size, limit)
+        if radius <= POINT * (abs(origin_x + x) + abs(origin_y + y)):
+            state[frame], gap[frame, 0], gap[frame, 1] = CONNECTED, 0.0, 0.0
+        else:
+            view = View(x, y, 0.0, radius, SLACK * max(radius, abs(x) + abs(y)))
+            state[frame], low, high = decide(
+                tree, room, linear[frame], moved, follows[frame], view, tolerance, with_gap, labels[frame]
+            )
+            if state[frame] == CONNECTED:
+                gap[frame, 0], gap[frame, 1] = 0.0, tolerance
+            elif with_gap:
+                gap[frame, 0] = max(low / radius, SLACK) / 2 if state[frame] == DISCONNECTED else 0.0
+                gap[frame, 1] = max(high / (2 * radius), tolerance / 2, gap[frame, 0])
+        if state[frame] == CONNECTED:
+            for i in range(count):
+                labels[frame, i] = 0
+    return state, gap, labels
+
+
+@njit(nogil=True, cache=True)
+def decide(tree, room, linear, translation, follows, view, tolerance, with_gap, labels):
+    """State of one attractor, and the bracket of its gap; `labels` (N,) as in `decision.decide`.
 
     Attractorlet i is ``A_i = w_i(U A_k)`` over the letters k that may follow i. All of them are connected if, for each
     i, the overlap graph of those A_k is; and then A is, if the overlap graph of all is. Where an A_i falls into parts,
@@ -32,17 +71,17 @@ def decide_recurrent(desk, linear, start, drift, follows, view, tolerance, with_
     allowed = follows.copy()
     while True:
         vertices = of.shape[0]
-        own_linear, own_start, own_drift = np.empty((vertices, 4)), np.empty((vertices, 2)), np.empty((vertices, 2))
+        own_linear, own_translation = np.empty((vertices, 4)), np.empty((vertices, 2))
         for v in range(vertices):
             for k in range(4):
                 own_linear[v, k] = linear[of[v], k]
             for k in range(2):
-                own_start[v, k], own_drift[v, k] = start[of[v], k], drift[of[v], k]
-        plant(desk.tree, own_linear, own_start, own_drift)
+                own_translation[v, k] = translation[of[v], k]
+        plant(tree, own_linear, own_translation, np.zeros((vertices, 2)))
         meets = np.full((vertices, vertices), -1, np.int8)
         group = np.arange(vertices)
         everything = np.ones(vertices, np.bool_)
-        sure = join_meeting(desk, allowed, view, tolerance, meets, everything, group)
+        sure = join_meeting(tree, room, allowed, view, tolerance, meets, everything, group)
         if vertices == count:
             for i in range(count):
                 labels[i] = group[i]
@@ -51,15 +90,15 @@ def decide_recurrent(desk, linear, start, drift, follows, view, tolerance, with_
                 return UNDECIDED, 0.0, 2 * view.radius
             low = high = 0.0
             if with_gap:
-                none, search = desk.corners[:0], empty_search(vertices)
-                low, high = measure_gap(desk.tree, allowed, view, tolerance, none, none, group, search)
+                none, search = np.empty((0, 2)), empty_search(vertices)
+                low, high = measure_gap(tree, allowed, view, tolerance, none, none, group, search)
             return DISCONNECTED, low, high
         parts = np.ones(vertices, np.int64)
         member = np.zeros((vertices, vertices), np.int64)
         for v in range(vertices):
             for k in range(vertices):
                 group[k] = k
-            if not join_meeting(desk, allowed, view, tolerance, meets, allowed[v], group):
+            if not join_meeting(tree, room, allowed, view, tolerance, meets, allowed[v], group):
                 return UNDECIDED, 0.0, 2 * view.radius
             parts[v] = 0
             for k in range(vertices):
@@ -87,20 +126,21 @@ def decide_recurrent(desk, linear, start, drift, follows, view, tolerance, with_
 
 
 @njit(nogil=True, cache=True)
-def join_meeting(desk, follows, view, tolerance, meets, among, group):
+def join_meeting(tree, room, follows, view, tolerance, meets, among, group):
     """Join the groups (V,) of those `among` (V,) all letters whose pieces meet; whether nothing was left open.
 
     What is found of pairs is kept in `meets` (V, V), -1 where nothing is known.
     """
     count = follows.shape[0]
-    corners = desk.corners[:0]
+    first, second, key = room
+    no_corners = np.empty((0, 2))
     for i in range(count):
         for j in range(i + 1, count):
             if not (among[i] and among[j]) or group[i] == group[j]:
                 continue
             if meets[i, j] < 0:
                 meets[i, j] = pair_test(
-                    desk.tree, follows, view, i, j, tolerance, corners, BUDGET, desk.first, desk.second, desk.key
+                    tree, follows, view, i, j, tolerance, no_corners, np.int64(BUDGET), first, second, key
                 )
             if meets[i, j] == MEET:
                 join(group, i, j)

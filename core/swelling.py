@@ -9,7 +9,7 @@ import numpy as np
 from . import parallel
 from .connectedness import Connectedness
 from .curve import smooth_keys
-from .decision import are_connected, decide_column
+from .decision import are_connected, column_steps
 from .morph import Morph
 from .report import family
 
@@ -57,11 +57,13 @@ def least_swell_field_steps(
     drift = morph.translation(1.0) - start
     follows = morph.follows_at(u)
 
-    def column(k: int) -> np.ndarray:
+    def column(k: int) -> Generator[None, None, np.ndarray]:
         least = np.full(len(v), NEVER)
         still = np.arange(len(v))
         for level, swell in enumerate(swells):
-            state = decide_column(linear[k, level], start, drift, v[still], follows[k], tolerance, False)[0]
+            state, _, _ = yield from column_steps(
+                linear[k, level], start, drift, v[still], follows[k], tolerance, False
+            )
             least[still[state == Connectedness.CONNECTED]] = swell
             if level == 0:
                 least[still[state == Connectedness.NO_ATTRACTOR]] = np.inf

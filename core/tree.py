@@ -22,7 +22,8 @@ A, B, C, D, START_X, START_Y, DRIFT_X, DRIFT_Y, NORM = range(9)
 
 Tree = namedtuple("Tree", "word child last used")
 """Words (CAPACITY, 9), those of one letter first; the place of each word's first child (CAPACITY,), which its other
-children follow, or -1; its last letter (CAPACITY,); the number of words (1,)."""
+children follow, or -1; its last letter (CAPACITY,); the number of words, and of
+pairs of them that were looked at (2,)."""
 
 View = namedtuple("View", "x y along radius slack")
 """One of the attractors that share a tree: a disc that holds it, where it is on the drift, and the rounding allowed in
@@ -33,7 +34,7 @@ a distance, so that pieces are called apart only when they are."""
 def empty_tree(capacity):
     """Room for a tree."""
     return Tree(
-        np.empty((capacity, 9)), np.empty(capacity, np.int32), np.empty(capacity, np.int32), np.zeros(1, np.int64)
+        np.empty((capacity, 9)), np.empty(capacity, np.int32), np.empty(capacity, np.int32), np.zeros(2, np.int64)
     )
 
 

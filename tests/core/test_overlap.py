@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from core import decision, overlap
 from core.connectedness import connectedness
-from core.decision import decide_column, decide_frames
+from core.decision import column_steps, decide_frames
 from core.heap import sift_down, sift_up
 from core.ifs import IFS
 from core.overlap import APART, MEET, UNKNOWN, pair_test, surely_one_piece
@@ -20,7 +20,7 @@ from tests.core.reference import at, cover, dense
 seeds = st.integers(0, 2**32 - 1)
 
 
-def outcome_of(linear, unit, i, j, tolerance, corners, budget=4000, stack=decision.STACK, capacity=10_000):
+def outcome_of(linear, unit, i, j, tolerance, corners, budget=4000, stack=overlap.STACK, capacity=10_000):
     tree = empty_tree(capacity)
     plant(tree, linear, unit, np.zeros_like(unit))
     room = np.empty(stack, np.int32), np.empty(stack, np.int32), np.empty(stack)
@@ -91,13 +91,23 @@ def test_the_heap_gives_the_least_first(values):
     assert found == sorted(values)
 
 
+def finished(steps):
+    while True:
+        try:
+            next(steps)
+        except StopIteration as ended:
+            return ended.value
+
+
 @pytest.mark.parametrize("with_gap", [False, True])
 def test_a_column_is_its_nodes_one_by_one(with_gap):
     linear = np.ascontiguousarray(random_ifs(12, 4, 0.3, 0.9).linear).reshape(-1, 4)
     random = np.random.default_rng(4)
     start, drift = random.normal(size=(2, 4, 2))
     along = np.linspace(-2, 2, 40)
-    state, gap, labels = decide_column(linear, start, drift, along, np.ones((4, 4), dtype=bool), 1 / 300, with_gap)
+    state, gap, labels = finished(
+        column_steps(linear, start, drift, along, np.ones((4, 4), dtype=bool), 1 / 300, with_gap)
+    )
     assert len(np.unique(state)) > 1
     translations = start + along[:, None, None] * drift
     frames = decide_frames(

@@ -141,3 +141,28 @@ def test_a_part_of_the_work_is_a_part_of_the_whole():
     shares = []
     assert finish(part(work(), 0.2, 0.6), shares.append) == "done"
     assert shares == pytest.approx([0.4, 0.6])
+
+
+@every_count
+def test_chunks_may_pause_and_go_on(threads):
+    def paused(k):
+        for _ in range(k % 4):
+            time.sleep(0.02)
+            yield
+        return k * k
+
+    shares = []
+    assert finish(steps(paused, range(12), threads), shares.append) == [k * k for k in range(12)]
+    assert shares[-1] == 1
+    assert sorted(shares) == shares
+
+
+def test_a_long_chunk_does_not_hold_a_step_up():
+    def paused(k):
+        for _ in range(20):
+            time.sleep(0.01)
+            yield
+        return k
+
+    # Were it not paused, it would be one step.
+    assert len(list(steps(paused, range(2), 1))) >= 4
