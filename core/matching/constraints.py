@@ -27,7 +27,7 @@ def settled_words(ifs: IFS, name: str, words: Sequence[Word] | None, locked: Seq
         if not word or min(word) < 0 or max(word) >= ifs.count:
             raise IFSError(f"A locked pair names a map that the {name} shape does not have; it has {ifs.count}.")
     if words is None:
-        if all(len(word) == 1 for word in locked):
+        if not locked:
             return None
         words = [(i,) for i in range(ifs.count)]
         prefixes = {word[:length] for word in locked for length in range(1, len(word))}

@@ -36,6 +36,9 @@ MISSED = 3
 PLANNED = 2
 """Candidates for which a path is planned where the straight line needs swell."""
 
+PLANNED_MAPS = 9
+"""With more maps than this a plan through (u,v) takes too long, and gains little over the straight line."""
+
 LONGER = 0.02
 """What a path twice as long as the straight line costs."""
 
@@ -203,7 +206,8 @@ def match_steps(
     plans = [(top, method) for top in tops[:PLANNED] for method in ("straight", "planned")]
     for rank, ((_, k, candidate), method) in enumerate(plans):
         # What costs this much beside swell cannot be the best.
-        if best is not None and best.report.spotless and candidate.cost_beside_swell >= best.cost:
+        beaten = best is not None and best.report.spotless and candidate.cost_beside_swell >= best.cost
+        if beaten or (method == "planned" and candidate.rows.shape[1] > PLANNED_MAPS):
             continue
         pairs = searches[k].pairs(candidate)
         if backwards:

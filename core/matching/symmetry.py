@@ -14,7 +14,7 @@ from ..kernels import njit
 DEGREE = 12
 """Of the moments compared: those up to it tell turns of up to as many folds."""
 
-EXACT = 1e-7
+EXACT = 1e-6
 """Moments in units of the enclosing radius that differ by less are equal."""
 
 SPREAD = 1e-6

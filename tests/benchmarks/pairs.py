@@ -47,7 +47,7 @@ def measure(initial, final, checked):
         "maps": [SHAPES[initial].count, SHAPES[final].count],
         "pairs": len(found.pairs),
         "frames not in one piece": report.disconnected,
-        "found in pieces by the reference": sum(in_pieces(maps, TOLERANCE, POINTS) for maps in shown),
+        "found in pieces by the reference": int(sum(in_pieces(maps, TOLERANCE, POINTS) for maps in shown)),
         "worst gap": report.worst_gap,
         "most swell": report.most_swell,
         "mean swell": report.mean_swell,
