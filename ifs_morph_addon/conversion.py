@@ -11,10 +11,11 @@ import numpy as np
 from ..core.affine import from_parameters, to_parameters
 from ..core.connectedness import Connectedness, connectedness
 from ..core.ifs import IFS, IFSError
+from ..core.matching import Pair, morph_of_pairs
 from ..core.morph import SCHEMES, Morph
 from ..core.raster import fit_window as fitted_window
 from ..core.shading import attractorlet_colors
-from . import fcurves, preparation
+from . import fcurves, pairs, preparation
 
 FIT_SAMPLES = 33
 """Places along the path whose attractors the window must hold."""
@@ -50,6 +51,10 @@ def shape_colors(shape) -> np.ndarray:
 def frame_colors(settings) -> np.ndarray:
     """Color and alpha (N, 4) of each attractorlet at the settings' u, between those of the two shapes."""
     start, end = shape_colors(settings.initial), shape_colors(settings.final)
+    if has_pairs(settings):
+        # A piece has the color of the map that it is a part of.
+        paired = current_pairs(settings)
+        start, end = start[[pair.initial[0] for pair in paired]], end[[pair.final[0] for pair in paired]]
     share = np.float32(min(max(settings.uv[0], 0.0), 1.0))
     colors = np.ones((len(start), 4), dtype=np.float32)
     # Colors that both shapes share stay the same to the bit, so that nothing is written anew for them.
@@ -75,15 +80,56 @@ def _ifs(maps: bytes, weights: bytes, name: str) -> IFS:
 
 
 def morph_of(settings) -> Morph:
-    """The morph between an object's two shapes; raises IFSError."""
-    winding = np.zeros(len(settings.final.maps), dtype=np.int32)
+    """The morph between an object's two shapes, made of its pairs if it has any; raises IFSError."""
+    initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
+    if has_pairs(settings):
+        return _paired_morph(initial, final, settings.scheme, current_pairs(settings))
+    if initial.count != final.count:
+        raise IFSError(
+            f"The initial shape has {initial.count} maps and the final one {final.count}; press Morph to pair them. "
+            "Without pairs both must have as many."
+        )
+    winding = np.zeros(final.count, dtype=np.int32)
     settings.final.maps.foreach_get("winding", winding)
-    return _morph(shape_ifs(settings.initial), shape_ifs(settings.final), settings.scheme, winding.tobytes())
+    return _morph(initial, final, settings.scheme, winding.tobytes())
 
 
 @lru_cache(maxsize=16)
 def _morph(initial: IFS, final: IFS, scheme: str, winding: bytes) -> Morph:
     return Morph(initial, final, core_name(scheme, SCHEMES), np.frombuffer(winding, dtype=np.int32))
+
+
+@lru_cache(maxsize=16)
+def _paired_morph(initial: IFS, final: IFS, scheme: str, paired: tuple[Pair, ...]) -> Morph:
+    return morph_of_pairs(initial, final, paired, core_name(scheme, SCHEMES))
+
+
+def has_pairs(settings) -> bool:
+    """Whether an object's maps are paired otherwise than map k with map k."""
+    return len(settings.matching.pairs) > 0
+
+
+def current_pairs(settings) -> tuple[Pair, ...]:
+    """The pairs that an object's morph is made of: those stored, or map k with map k where they do not fit.
+
+    Raises
+    ------
+    IFSError
+        If a shape is none.
+    """
+    initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
+    found = pairs.fitted(initial, final, settings.matching) if has_pairs(settings) else None
+    return found or pairs.in_order(initial, final)
+
+
+def pairs_problem(settings) -> str:
+    """What is wrong with an object's pairs, in one sentence; empty if nothing is."""
+    try:
+        initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
+    except IFSError:
+        return ""  # Said of the shapes.
+    fits = not has_pairs(settings) or pairs.fitted(initial, final, settings.matching)
+    return "" if fits else pairs.OUTDATED
 
 
 def state_sentence(settings) -> str:
@@ -120,6 +166,8 @@ def fingerprint(settings, *more) -> str:
         digest.update(shape_maps(shape).tobytes())
     winding = [item.winding for item in settings.final.maps]
     digest.update(repr((settings.scheme, winding, settings.gap_resolution, more)).encode())
+    if has_pairs(settings):
+        digest.update(repr(pairs.plain(settings.matching)).encode())
     return digest.hexdigest()[:16]
 
 
@@ -218,13 +266,32 @@ def fit_window(owner) -> None:
 
 
 def shape_problem(settings) -> str:
-    """What keeps an object's shapes from being morphed, in one sentence; empty if nothing does."""
+    """What keeps an object's shapes from being morphed as they are paired, in one sentence; empty if nothing does."""
     if preparation.is_running():
         return preparation.message()
     try:
-        morph = morph_of(settings)
-        morph.initial.require_attractor()
-        morph.final.require_attractor()
+        morph_of(settings)
+        _require_attractors(settings)
     except (IFSError, ImportError) as error:  # A numba that does not fit its numpy cannot be imported.
         return str(error)
     return ""
+
+
+def match_problem(settings) -> str:
+    """What keeps an object's shapes from being matched, in one sentence; empty if nothing does."""
+    if preparation.is_running():
+        return preparation.message()
+    try:
+        for ifs in _require_attractors(settings):
+            if ifs.is_recurrent:
+                return "Recurrent shapes cannot be matched yet; plan a path with the maps in their order instead."
+    except (IFSError, ImportError) as error:
+        return str(error)
+    return ""
+
+
+def _require_attractors(settings) -> list[IFS]:
+    shapes = [shape_ifs(settings.initial), shape_ifs(settings.final)]
+    for ifs in shapes:
+        ifs.require_attractor()
+    return shapes

@@ -19,6 +19,8 @@ from bpy.props import (
 from . import conversion
 from .conversion import identifier
 from .output_properties import IFSMorphOutputSettings
+from .pair_properties import CLASSES as PAIR_CLASSES
+from .pair_properties import IFSMorphMatchSettings
 from .property_options import LEAF, LIST, STILL, redraw, refit, show_edited_shape
 
 SCHEMES = {
@@ -284,6 +286,7 @@ class IFSMorphSettings(bpy.types.PropertyGroup):
         options=STILL,
         override=LEAF,
     )
+    matching: PointerProperty(type=IFSMorphMatchSettings, name="Matching", override=LEAF)
     locus: PointerProperty(type=IFSMorphLocusSettings, name="Connectedness Locus", override=LEAF)
     path: PointerProperty(type=IFSMorphPathSettings, name="Path", override=LEAF)
     output: PointerProperty(type=IFSMorphOutputSettings, name="Output", override=LEAF)
@@ -304,6 +307,7 @@ class IFSMorphLocusPicture(bpy.types.PropertyGroup):
 CLASSES = (
     IFSMorphMap,
     IFSMorphShape,
+    *PAIR_CLASSES,
     IFSMorphLocusSettings,
     IFSMorphPathSettings,
     IFSMorphOutputSettings,

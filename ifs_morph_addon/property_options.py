@@ -1,5 +1,7 @@
 """What the properties have in common: their options, and what follows when one is edited."""
 
+from contextlib import contextmanager
+
 from . import conversion, fcurves
 
 LEAF = {"LIBRARY_OVERRIDABLE"}
@@ -33,6 +35,17 @@ def release_window(owner) -> None:
     """Fit the window again, after `hold_window`."""
     _held.discard(owner.session_uid)
     conversion.fit_window(owner)
+
+
+@contextmanager
+def window_held(owner):
+    """Fit the window of an object once, after all that is done to it meanwhile, and have it rendered again."""
+    hold_window(owner)
+    try:
+        yield
+    finally:
+        release_window(owner)
+        owner.update_tag()
 
 
 def show_edited_shape(self, context):

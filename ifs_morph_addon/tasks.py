@@ -30,6 +30,9 @@ class LongTask:
     last yield, and says what came of it by `self.report`.
     """
 
+    on_escape = "Cancel"
+    """What Esc does, for the status bar."""
+
     def execute(self, context):
         """Work to the end, as scripts and background runs want it."""
         try:
@@ -54,11 +57,9 @@ class LongTask:
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
-        """Work a little at each tick of the timer; Esc and the right mouse button cancel."""
+        """Work a little at each tick of the timer; Esc and the right mouse button interrupt."""
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
-            self.cancel(context)
-            self.report({"INFO"}, f"{self.bl_label} cancelled")
-            return {"CANCELLED"}
+            return self.interrupt(context)
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
         started = time.perf_counter()
@@ -78,6 +79,12 @@ class LongTask:
         self._show(context, share)
         return {"RUNNING_MODAL"}
 
+    def interrupt(self, context):
+        """Stop where it is, on Esc: leave everything as it was, unless a task has something to keep by then."""
+        self.cancel(context)
+        self.report({"INFO"}, f"{self.bl_label} cancelled")
+        return {"CANCELLED"}
+
     def cancel(self, context):
         """Stop and leave everything as it was; Blender calls this too, when it closes a file."""
         self._steps.close()
@@ -85,7 +92,7 @@ class LongTask:
 
     def _show(self, context, share):
         context.window_manager.progress_update(100 * share)
-        context.workspace.status_text_set(f"{self.bl_label}: {100 * share:.0f} %   (Esc: Cancel)")
+        context.workspace.status_text_set(f"{self.bl_label}: {100 * share:.0f} %   (Esc: {self.on_escape})")
 
     def _close(self, context):
         _running.remove(self.bl_idname)

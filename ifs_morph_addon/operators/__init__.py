@@ -1,8 +1,8 @@
 """What an animator does: one file for one subject."""
 
-from . import add, files, locus, maps, output, path, shapes
+from . import add, files, locus, maps, matching, output, pairs, path, shapes
 
-MODULES = (add, shapes, files, maps, locus, path, output)
+MODULES = (add, shapes, files, maps, matching, pairs, locus, path, output)
 
 
 def register():

@@ -3,6 +3,8 @@
 import bpy
 
 from ..conversion import fit_window
+from ..pairs import exchange_maps
+from ..property_options import window_held
 from .poll import ENDS, editable_morph, shape_of
 
 STORED = ("name", "matrix", "weight", "color", "winding")
@@ -84,7 +86,7 @@ class IFSMORPH_OT_map_duplicate(_MapOperator, bpy.types.Operator):
 
 
 class IFSMORPH_OT_map_move(_MapOperator, bpy.types.Operator):
-    """Move the active map in the list; map k of the initial shape becomes map k of the final one"""
+    """Move the active map in the list. Pairs move with it; without pairs map k becomes map k"""
 
     bl_idname = "ifs_morph.map_move"
     bl_label = "Move Map"
@@ -103,6 +105,9 @@ class IFSMORPH_OT_map_move(_MapOperator, bpy.types.Operator):
             return "The map is at the end of the list already."
         shape.maps.move(index, target)
         shape.active_index = target
+        owner = shape.id_data
+        with window_held(owner):
+            exchange_maps(owner.ifs_morph.matching, self.end.lower(), index, target)
         return None
 
 

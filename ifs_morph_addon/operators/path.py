@@ -7,7 +7,7 @@ import bpy
 from ...core.ifs import IFSError
 from ...core.parallel import part
 from ...core.path import METHODS, plan_path_steps
-from ...core.report import check_frames, check_frames_steps
+from ...core.report import FrameCheck, check_frames, check_frames_steps
 from .. import fcurves
 from ..conversion import core_name, fit_window, morph_of, path_fingerprint, tolerance
 from ..locus_picture import locus_steps
@@ -21,14 +21,18 @@ LOCUS_SHARE = 0.5
 def _path_can_be_keyed(cls, context) -> bool:
     if not sound_morph(cls, context):
         return False
-    owner = context.object
-    path = owner.ifs_morph.path
-    problem = fcurves.obstacle(owner)
-    if problem is None and path.frame_end <= path.frame_start:
-        problem = "The path must end after the frame at which it starts"
+    problem = keying_problem(context.object)
     if problem:
         cls.poll_message_set(problem)
     return problem is None
+
+
+def keying_problem(owner) -> str | None:
+    """Why no path can be keyed over the frame range of an object, or None if one can."""
+    path = owner.ifs_morph.path
+    if path.frame_end <= path.frame_start:
+        return fcurves.obstacle(owner) or "The path must end after the frame at which it starts"
+    return fcurves.obstacle(owner)
 
 
 class _KeyPath(LongTask):
@@ -42,23 +46,34 @@ class _KeyPath(LongTask):
         """Plan, then key."""
         owner = context.object
         settings = owner.ifs_morph
-        frame_start, frame_end = settings.path.frame_start, settings.path.frame_end
+        frames = settings.path.frame_end - settings.path.frame_start + 1
         method = self.method(settings)
         locus = None
         low, high = settings.locus.domain
         if method == "planned" and low <= 0 and high >= 1:
             locus = yield from part(locus_steps(settings, gap=False), 0.0, LOCUS_SHARE)
-        steps = plan_path_steps(morph_of(settings), locus, frame_end - frame_start + 1, tolerance(settings), method)
+        steps = plan_path_steps(morph_of(settings), locus, frames, tolerance(settings), method)
         path = yield from part(steps, LOCUS_SHARE if locus else 0.0, 1.0)
-        fcurves.write_path(owner, path, frame_start, frame_end)
-        # What counts is what Blender evaluates, with the F-curves' own precision.
-        keyed = check_frames(
-            morph_of(settings), fcurves.sample_path(owner, range(frame_start, frame_end + 1)), tolerance(settings)
-        )
-        settings.path.report = replace(path.report, path=keyed).text()
-        settings.path.inputs = path_fingerprint(settings)
+        keyed = key_path(owner, path)
+        tell(settings, replace(path.report, path=keyed).text())
         fit_window(owner)
         self.report({"INFO"}, _headline(settings.path.report))
+
+
+def key_path(owner, path) -> FrameCheck:
+    """Key a path over the frame range of an object; what the shape is at each frame then."""
+    settings = owner.ifs_morph
+    frame_start, frame_end = settings.path.frame_start, settings.path.frame_end
+    fcurves.write_path(owner, path, frame_start, frame_end)
+    # What counts is what Blender evaluates, with the F-curves' own precision.
+    places = fcurves.sample_path(owner, range(frame_start, frame_end + 1))
+    return check_frames(morph_of(settings), places, tolerance(settings))
+
+
+def tell(settings, report: str) -> None:
+    """Keep the report on the path of an object with what it was made for."""
+    settings.path.report = report
+    settings.path.inputs = path_fingerprint(settings)
 
 
 def _headline(report: str) -> str:
@@ -115,8 +130,7 @@ class IFSMORPH_OT_check_path(LongTask, bpy.types.Operator):
             raise IFSError("The path must end after the frame at which it starts.")
         places = fcurves.sample_path(owner, frames)
         check = yield from check_frames_steps(morph_of(settings), places, tolerance(settings))
-        settings.path.report = check.text()
-        settings.path.inputs = path_fingerprint(settings)
+        tell(settings, check.text())
         broken = [frame for frame, state in zip(frames, check.state, strict=True) if state != 0]
         self.report({"WARNING" if broken else "INFO"}, _headline(settings.path.report))
 

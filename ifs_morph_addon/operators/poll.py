@@ -1,6 +1,6 @@
 """When an operator can work on the active object; greyed-out buttons show the reason otherwise."""
 
-from ..conversion import shape_problem
+from ..conversion import match_problem, shape_problem
 
 
 def is_changeable(owner) -> bool:
@@ -32,6 +32,16 @@ def sound_morph(cls, context) -> bool:
     if not editable_morph(cls, context):
         return False
     problem = shape_problem(context.object.ifs_morph)
+    if problem:
+        cls.poll_message_set(problem)
+    return not problem
+
+
+def matchable_morph(cls, context) -> bool:
+    """Whether the active object is a morph that may be changed and whose shapes can be matched."""
+    if not editable_morph(cls, context):
+        return False
+    problem = match_problem(context.object.ifs_morph)
     if problem:
         cls.poll_message_set(problem)
     return not problem

@@ -171,7 +171,7 @@ def _set(mesh, name, values) -> None:
 
 def _colors(settings) -> np.ndarray:
     """Color (N, 4) of each attractorlet's points."""
-    output = settings.output
-    if output.point_color == "SINGLE":
-        return np.tile(np.float32(output.color), (len(settings.initial.maps), 1))
-    return frame_colors(settings)
+    colors = frame_colors(settings)
+    if settings.output.point_color == "SINGLE":
+        colors[:] = settings.output.color
+    return colors

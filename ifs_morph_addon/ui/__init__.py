@@ -1,8 +1,8 @@
 """The sidebar tabs, the Add menu and the File menu."""
 
-from . import files, lists, locus_sidebar, menus, panels, presets
+from . import files, lists, locus_sidebar, menus, pairs, panels, presets
 
-MODULES = (lists, menus, presets, panels, locus_sidebar, files)
+MODULES = (lists, pairs, menus, presets, panels, locus_sidebar, files)
 
 
 def register():

@@ -3,8 +3,9 @@
 import bpy
 
 from .. import fcurves, live, locus_picture, outputs, preparation
-from ..conversion import path_fingerprint, shape_problem
+from ..conversion import has_pairs, pairs_problem, path_fingerprint, shape_problem
 from .files import draw_file_buttons
+from .pairs import IFSMORPH_PT_pairs
 from .presets import IFSMORPH_PT_output_presets
 from .text import sentence
 
@@ -43,12 +44,21 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
             column.operator("object.ifs_morph_add", text="Add Point Cloud", icon="POINTCLOUD_DATA").kind = "POINTS"
             return
         settings = owner.ifs_morph
+        column = layout.column()
+        button = column.row()
+        button.scale_y = 1.6
+        button.operator("ifs_morph.morph", icon="SHADERFX")
+        row = column.row(align=True)
+        row.prop(settings.matching, "budget", expand=True)
         layout.use_property_split = True
+        row = column.row()
+        row.use_property_decorate = False
+        row.prop(settings, "scheme")
         column = layout.column(align=True)
         column.prop(settings, "uv", index=0, text="U")
         column.prop(settings, "uv", index=1, text="V")
         column.prop(settings, "swell")
-        problem = shape_problem(settings) or outputs.message(owner)
+        problem = shape_problem(settings) or outputs.message(owner) or pairs_problem(settings)
         if problem and not preparation.is_running():
             sentence(layout, context, problem, icon="ERROR")
         if owner.library is not None:
@@ -58,6 +68,31 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
                 "This object is linked from a library and cannot be changed.",
                 icon="LIBRARY_DATA_DIRECT",
             )
+
+
+class IFSMORPH_PT_report(_Panel, bpy.types.Panel):
+    """What was found about the path."""
+
+    bl_label = "Report"
+    bl_parent_id = "IFSMORPH_PT_main"
+
+    @classmethod
+    def poll(cls, context):
+        """There is one once a path was keyed or checked."""
+        return super().poll(context) and bool(context.object.ifs_morph.path.report)
+
+    def draw(self, context):
+        """Draw the report, and whether it is out of date."""
+        layout = self.layout
+        owner = context.object
+        path = owner.ifs_morph.path
+        current = path.inputs == path_fingerprint(owner.ifs_morph)
+        if not current or not fcurves.has_path(owner):
+            sentence(layout, context, "The report is out of date: the morph has changed since.", icon="INFO")
+        box = layout.box()
+        box.active = current
+        for line in path.report.splitlines():
+            sentence(box, context, line)
 
 
 class _ShapePanel(_Panel):
@@ -141,24 +176,28 @@ class IFSMORPH_PT_edit_maps(_Panel, bpy.types.Panel):
             sentence(layout, context, text)
 
 
-class IFSMORPH_PT_interpolation(_Panel, bpy.types.Panel):
-    """How one shape becomes the other."""
+class IFSMORPH_PT_winding(_Panel, bpy.types.Panel):
+    """How often the maps turn on the way."""
 
-    bl_label = "Interpolation"
+    bl_label = "Winding"
     bl_parent_id = "IFSMORPH_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
+    @classmethod
+    def poll(cls, context):
+        """Pairs have windings of their own."""
+        return super().poll(context) and not has_pairs(context.object.ifs_morph)
+
     def draw(self, context):
-        """Draw the scheme and each map's winding."""
+        """Draw each map's winding."""
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.object.ifs_morph
-        layout.prop(settings, "scheme")
         column = layout.column(align=True)
         column.active = settings.scheme != "ELEMENTWISE"
-        for k, item in enumerate(settings.final.maps):
-            column.prop(item, "winding", text=item.name if k else f"Winding  {item.name}")
+        for item in settings.final.maps:
+            column.prop(item, "winding", text=item.name)
 
 
 class IFSMORPH_PT_locus(_Panel, bpy.types.Panel):
@@ -208,13 +247,11 @@ class IFSMORPH_PT_path(_Panel, bpy.types.Panel):
     bl_parent_id = "IFSMORPH_PT_main"
 
     def draw(self, context):
-        """Draw the settings, the buttons, and the report."""
+        """Draw the settings and the buttons."""
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        owner = context.object
-        settings = owner.ifs_morph
-        path = settings.path
+        path = context.object.ifs_morph.path
         layout.prop(path, "method")
         column = layout.column(align=True)
         column.prop(path, "frame_start")
@@ -225,15 +262,6 @@ class IFSMORPH_PT_path(_Panel, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("ifs_morph.check_path", icon="CHECKMARK")
         row.operator("ifs_morph.clear_path", icon="X")
-        if not path.report:
-            return
-        current = path.inputs == path_fingerprint(settings)
-        if not current or not fcurves.has_path(owner):
-            sentence(layout, context, "The report is out of date: the morph has changed since.", icon="INFO")
-        box = layout.box()
-        box.active = current
-        for line in path.report.splitlines():
-            sentence(box, context, line)
 
 
 class IFSMORPH_PT_output(_Panel, bpy.types.Panel):
@@ -318,10 +346,12 @@ def _title(name: str) -> str:
 
 CLASSES = (
     IFSMORPH_PT_main,
+    IFSMORPH_PT_report,
     IFSMORPH_PT_initial,
     IFSMORPH_PT_final,
     IFSMORPH_PT_edit_maps,
-    IFSMORPH_PT_interpolation,
+    IFSMORPH_PT_pairs,
+    IFSMORPH_PT_winding,
     IFSMORPH_PT_locus,
     IFSMORPH_PT_path,
     IFSMORPH_PT_output,

@@ -1,0 +1,124 @@
+"""Any shape into any shape by one button: match the shapes, key the path, say what came of it."""
+
+from dataclasses import replace
+
+import bpy
+
+from ...core.ifs import IFSError
+from ...core.matching import BUDGET, match_steps
+from ...core.morph import SCHEMES
+from .. import pairs
+from ..conversion import core_name, shape_ifs, tolerance
+from ..property_options import window_held
+from ..tasks import LongTask
+from .path import key_path, keying_problem, tell
+from .poll import matchable_morph
+
+WORK = {"QUICK": BUDGET, "THOROUGH": 8 * BUDGET}
+"""Budget of core's search for each that may be chosen."""
+
+
+class _Match(LongTask):
+    """Look for the best match, and keep the best one found so far when Esc is pressed."""
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    best = None
+    """The best match so far."""
+
+    @property
+    def on_escape(self):
+        """What Esc does, for the status bar."""
+        if self.best is None:
+            return "Cancel"
+        return f"Keep the best so far, swell {self.best.report.most_swell:.2f}"
+
+    def work(self, context):
+        """Search, then keep what was found."""
+        settings = context.object.ifs_morph
+        initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
+        locked = ()
+        if any(item.locked for item in settings.matching.pairs):
+            fitted = pairs.fitted(initial, final, settings.matching)
+            if fitted is None:
+                raise IFSError("Locked pairs no longer fit the maps; unlock them, or Clear Pairs.")
+            locked = tuple(pair for pair, item in zip(fitted, settings.matching.pairs, strict=True) if item.locked)
+        best = yield from match_steps(
+            initial,
+            final,
+            max(2, settings.path.frame_end - settings.path.frame_start + 1),
+            tolerance(settings),
+            locked,
+            scheme=core_name(settings.scheme, SCHEMES),
+            budget=WORK[settings.matching.budget],
+            found=self._found,
+        )
+        self._keep(context, best)
+
+    def _found(self, match):
+        self.best = match
+
+    def interrupt(self, context):
+        """Keep the best match so far, or leave everything as it was before there is one."""
+        if self.best is None:
+            return super().interrupt(context)
+        self.cancel(context)
+        try:
+            self._keep(context, self.best)
+        except IFSError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+    def _keep(self, context, match):
+        owner = context.object
+        matching = owner.ifs_morph.matching
+        held = {(item.initial, item.final) for item in matching.pairs if item.locked}
+        locks = tuple((pairs.text_of(pair.initial), pairs.text_of(pair.final)) in held for pair in match.pairs)
+        with window_held(owner):
+            pairs.write(matching, match.pairs, locks)
+            self.keep(owner, match)
+
+
+class IFSMORPH_OT_morph(_Match, bpy.types.Operator):
+    """Pair the maps of any two shapes, find a path that stays in one piece, and key it over the frames"""
+
+    bl_idname = "ifs_morph.morph"
+    bl_label = "Morph"
+
+    @classmethod
+    def poll(cls, context):
+        """Need two shapes, and F-curves that may be written."""
+        if not matchable_morph(cls, context):
+            return False
+        problem = keying_problem(context.object)
+        if problem:
+            cls.poll_message_set(problem)
+        return problem is None
+
+    def keep(self, owner, match):
+        """Key the path of the match, and say what came of it."""
+        keyed = key_path(owner, match.path)
+        report = replace(match.report, path=replace(match.report.path, path=keyed))
+        tell(owner.ifs_morph, report.text())
+        broken = report.disconnected
+        for line in report.text().splitlines()[:2]:
+            self.report({"WARNING" if broken else "INFO"}, line)
+
+
+class IFSMORPH_OT_match_pairs(_Match, bpy.types.Operator):
+    """Pair the maps of any two shapes so that as little as can be breaks on the way; the keys stay as they are"""
+
+    bl_idname = "ifs_morph.match_pairs"
+    bl_label = "Match Pairs"
+
+    poll = classmethod(matchable_morph)
+
+    def keep(self, owner, match):
+        """Say what the pairs are."""
+        self.report({"INFO"}, match.report.text().splitlines()[0])
+
+
+CLASSES = (IFSMORPH_OT_morph, IFSMORPH_OT_match_pairs)
+
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -1,0 +1,181 @@
+"""The pairs on an object to those of core and back.
+
+Properties hold single precision, which could take a map the other way round where it turns by just half a turn. So
+symmetries are read as those of the shape that are nearest.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from ..core.ifs import IFS, IFSError
+from ..core.matching import Pair, morph_of_pairs, symmetry_text
+from ..core.matching.pairs import IDENTITY
+from ..core.matching.symmetry import symmetries
+
+NEAR = 1e-4
+"""Entries of a symmetry, in units of the shape, that differ by less are of the same one. Others are far apart."""
+
+STORED = ("initial", "final", "initial_symmetry", "final_symmetry", "winding", "locked")
+"""What a pair stores; its symmetry in words follows."""
+
+OUTDATED = "The pairs no longer fit the maps, so map k becomes map k for now: Match Pairs again, or Clear Pairs."
+
+
+def stored(matching) -> tuple[Pair, ...]:
+    """Pairs as they are stored; raises IFSError if a word is none."""
+    return tuple(
+        Pair(word_of(initial), word_of(final), *symmetries_and_winding)
+        for initial, final, *symmetries_and_winding in plain(matching)
+    )
+
+
+def word_of(text: str) -> tuple[int, ...]:
+    """Word, counted from 0, of the text of it, counted from 1; raises IFSError."""
+    try:
+        return tuple(int(part) - 1 for part in text.split())
+    except ValueError as error:
+        raise IFSError(f"“{text}” is no map: write its number, or several with spaces for a part of it.") from error
+
+
+def text_of(word: tuple[int, ...]) -> str:
+    """Text of a word."""
+    return " ".join(str(letter + 1) for letter in word)
+
+
+def _rows(matrix) -> tuple:
+    return tuple(tuple(row) for row in matrix)
+
+
+def described(item) -> str:
+    """The symmetries of a stored pair in words; nothing if it makes use of none."""
+    found = [(end, symmetry_text(_rows(getattr(item, f"{end}_symmetry")))) for end in ("initial", "final")]
+    return ", ".join(f"{end} {text}" for end, text in found if text)
+
+
+def fitted(initial: IFS, final: IFS, matching) -> tuple[Pair, ...] | None:
+    """Pairs that are stored for two shapes, their symmetries to the last digit; None if they do not fit them."""
+    try:
+        return _fitted(initial, final, stored(matching))
+    except IFSError:
+        return None
+
+
+@lru_cache(maxsize=16)
+def _fitted(initial: IFS, final: IFS, pairs: tuple[Pair, ...]) -> tuple[Pair, ...] | None:
+    pairs = tuple(
+        Pair(
+            pair.initial,
+            pair.final,
+            _exact(pair.initial_symmetry, initial),
+            _exact(pair.final_symmetry, final),
+            pair.winding,
+        )
+        for pair in pairs
+    )
+    try:
+        morph_of_pairs(initial, final, pairs, "elementwise")
+    except IFSError:
+        return None
+    return pairs
+
+
+def _exact(symmetry, ifs: IFS):
+    """Return the symmetry of a shape that is nearest; raises IFSError if none is near."""
+    if symmetry == IDENTITY:
+        return symmetry
+    return _rows(symmetries_of(ifs)[_index(symmetry, ifs)].tolist())
+
+
+def _index(symmetry, ifs: IFS) -> int:
+    known = symmetries_of(ifs)
+    scale = np.array([1, 1, max(ifs.enclosing_disc[1], np.abs(np.array(symmetry)[:, 2]).max(), 1e-300)])
+    apart = np.abs((known - np.array(symmetry)) / scale).max(axis=(1, 2))
+    if not apart.min() < NEAR:
+        raise IFSError(OUTDATED)
+    return int(np.argmin(apart))
+
+
+def next_symmetry(ifs: IFS, symmetry) -> tuple:
+    """Return the symmetry of a shape that follows one of it, and after the last the first, which leaves it as it is.
+
+    Raises
+    ------
+    IFSError
+        If the shape has no symmetry but that one, or no attractor.
+    """
+    known = symmetries_of(ifs)
+    if len(known) == 1 and symmetry == IDENTITY:
+        raise IFSError("This shape has no symmetries: no turn or mirroring takes it to itself.")
+    try:
+        index = _index(symmetry, ifs)
+    except IFSError:
+        index = -1  # What is no symmetry any more gives way to the identity.
+    return _rows(known[(index + 1) % len(known)].tolist())
+
+
+@lru_cache(maxsize=16)
+def symmetries_of(ifs: IFS) -> np.ndarray:
+    """Symmetries (G, 2, 3) of a shape, the identity first; raises IFSError without an attractor."""
+    ifs.require_attractor()
+    return symmetries(ifs)
+
+
+def in_order(initial: IFS, final: IFS) -> tuple[Pair, ...]:
+    """Map k and map k, the shorter list again from its first."""
+    return tuple(Pair((k % initial.count,), (k % final.count,)) for k in range(max(initial.count, final.count)))
+
+
+def write(matching, pairs: Sequence[Pair], locked: Sequence[bool]) -> None:
+    """Store pairs in place of those that are there.
+
+    Raises
+    ------
+    IFSError
+        If the object is a library override with more pairs in its library. Then nothing has changed.
+    """
+    collection, removed = matching.pairs, []
+    while len(collection) > len(pairs):
+        last = len(collection) - 1
+        removed.append(_values(collection[last]))
+        try:
+            collection.remove(last)
+        except TypeError as error:
+            # It is still there, and those that were removed come back.
+            for values in reversed(removed[:-1]):
+                _fill(collection.add(), values)
+            raise IFSError(
+                f"This library override has {len(collection)} pairs, some of them its library's, and cannot have "
+                f"{len(pairs)}; make the object local first."
+            ) from error
+    while len(collection) < len(pairs):
+        collection.add()
+    for item, pair, lock in zip(collection, pairs, locked, strict=True):
+        values = (text_of(pair.initial), text_of(pair.final), pair.initial_symmetry, pair.final_symmetry)
+        _fill(item, dict(zip(STORED, (*values, pair.winding or 0, lock), strict=True)))
+    matching.active_index = max(0, min(matching.active_index, len(pairs) - 1))
+
+
+def exchange_maps(matching, end: str, first: int, second: int) -> None:
+    """Have pairs go on to name the same maps after two maps of a shape have changed places."""
+    places = {first: second, second: first}
+    for item in matching.pairs:
+        word = word_of(getattr(item, end))
+        setattr(item, end, text_of(tuple(places.get(letter, letter) for letter in word)))
+
+
+def plain(matching) -> list[tuple]:
+    """All that the morph depends on, as numbers and texts; it need not make sense."""
+    return [tuple(_values(item).values())[:-1] for item in matching.pairs]
+
+
+def _values(item) -> dict:
+    # Matrices would follow the item, and be gone with it.
+    symmetries = _rows(item.initial_symmetry), _rows(item.final_symmetry)
+    return dict(zip(STORED, (item.initial, item.final, *symmetries, item.winding, item.locked), strict=True))
+
+
+def _fill(item, values: dict) -> None:
+    for name, value in values.items():
+        setattr(item, name, value)

@@ -1,0 +1,78 @@
+"""The list of pairs: which map becomes which, and how."""
+
+import bpy
+
+from ..conversion import has_pairs, pairs_problem
+from .text import sentence
+
+
+class IFSMORPH_UL_pairs(bpy.types.UIList):
+    """Pairs of maps: what becomes what, through which symmetries, with how many turns, and whether it is locked."""
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_property, index=0, flt_flag=0):
+        """Draw one pair."""
+        row = layout.row(align=True)
+        words = row.row(align=True)
+        words.ui_units_x = 4.5
+        words.label(text=f"{item.initial}  \N{RIGHTWARDS ARROW}  {item.final}")
+        row.label(text=item.symmetry)
+        if item.winding:
+            turns = row.row(align=True)
+            turns.ui_units_x = 1.6
+            turns.label(text=f"{item.winding:+d}")
+        row.prop(item, "locked", text="", icon="LOCKED" if item.locked else "UNLOCKED", emboss=False)
+
+
+class IFSMORPH_PT_pairs(bpy.types.Panel):
+    """Which map of the initial shape becomes which of the final one."""
+
+    bl_label = "Pairs"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "IFS Morph"
+    bl_parent_id = "IFSMORPH_PT_main"
+
+    @classmethod
+    def poll(cls, context):
+        """Show for morph objects."""
+        return context.object is not None and context.object.ifs_morph.kind != "NONE"
+
+    def draw(self, context):
+        """Draw the list, the buttons beside it, and the active pair."""
+        layout = self.layout
+        settings = context.object.ifs_morph
+        matching = settings.matching
+        row = layout.row(align=True)
+        row.operator("ifs_morph.match_pairs", icon="SHADERFX")
+        row.operator("ifs_morph.clear_pairs", text="", icon="X")
+        if not has_pairs(settings):
+            sentence(layout, context, "There are none: map k of the initial shape becomes map k of the final one.")
+            return
+        problem = pairs_problem(settings)
+        if problem:
+            sentence(layout, context, problem, icon="ERROR")
+        row = layout.row()
+        row.template_list("IFSMORPH_UL_pairs", "", matching, "pairs", matching, "active_index", rows=5)
+        column = row.column(align=True)
+        for direction, icon in (("UP", "TRIA_UP"), ("DOWN", "TRIA_DOWN")):
+            column.operator("ifs_morph.pair_swap", text="", icon=icon).direction = direction
+        column.separator()
+        for action, icon in (("LOCK", "LOCKED"), ("UNLOCK", "UNLOCKED")):
+            column.operator("ifs_morph.pairs_lock", text="", icon=icon).action = action
+        if 0 <= matching.active_index < len(matching.pairs):
+            self.draw_pair(layout, matching.pairs[matching.active_index])
+
+    def draw_pair(self, layout, item):
+        """Draw the active pair: both words, with their buttons, and the turns."""
+        column = layout.column(align=True)
+        column.use_property_split = True
+        column.use_property_decorate = False
+        for end in ("INITIAL", "FINAL"):
+            row = column.row(align=True)
+            row.prop(item, end.lower())
+            row.operator("ifs_morph.pair_symmetry", text="", icon="FILE_REFRESH").end = end
+            row.operator("ifs_morph.pair_split", text="", icon="MOD_EXPLODE").end = end
+        column.prop(item, "winding")
+
+
+register, unregister = bpy.utils.register_classes_factory((IFSMORPH_UL_pairs,))
