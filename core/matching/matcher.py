@@ -203,11 +203,14 @@ def match_steps(
             break
     tops.sort(key=lambda each: each[:2])
     work = sum(problem.work for problem in searches)
+    # No path stays connected that begins or ends in pieces.
+    whole = (straight.report.path.state[[0, -1]] == Connectedness.CONNECTED).all()
     plans = [(top, method) for top in tops[:PLANNED] for method in ("straight", "planned")]
     for rank, ((_, k, candidate), method) in enumerate(plans):
         # What costs this much beside swell cannot be the best.
         beaten = best is not None and best.report.spotless and candidate.cost_beside_swell >= best.cost
-        if beaten or (method == "planned" and candidate.rows.shape[1] > PLANNED_MAPS):
+        plannable = whole and candidate.rows.shape[1] <= PLANNED_MAPS
+        if beaten or (method == "planned" and not plannable):
             continue
         pairs = searches[k].pairs(candidate)
         if backwards:
