@@ -10,7 +10,6 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import pairs
 from .property_options import LEAF, LIST, STILL, refit
 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
@@ -37,7 +36,6 @@ def _symmetry(end):
         name=f"{end} Symmetry",
         description=f"Turn or mirroring that takes the {end.lower()} shape to itself, made before the map",
         size=(2, 3),
-        subtype="MATRIX",
         default=IDENTITY,
         options=STILL,
         override=LEAF,
@@ -52,12 +50,6 @@ class IFSMorphPair(bpy.types.PropertyGroup):
     final: _word("Final")
     initial_symmetry: _symmetry("Initial")
     final_symmetry: _symmetry("Final")
-    symmetry: StringProperty(
-        name="Symmetry",
-        description="The symmetries of the shapes that this pair makes use of, in words",
-        get=pairs.described,
-        options=STILL,
-    )
     winding: IntProperty(
         name="Winding",
         description="Whole turns that the map makes on its way, on top of the shorter way",

@@ -62,7 +62,7 @@ class IFSMorphMap(bpy.types.PropertyGroup):
         name="Matrix",
         description="The map as a matrix: x' = a x + b y + e and y' = c x + d y + f",
         size=(2, 3),
-        subtype="MATRIX",
+        # Blender would take the default of the subtype MATRIX by columns.
         default=((0.5, 0.0, 0.0), (0.0, 0.5, 0.0)),
         min=-1e6,
         max=1e6,

@@ -3,6 +3,7 @@
 import bpy
 
 from ..conversion import has_pairs, pairs_problem
+from ..pairs import described
 from .text import sentence
 
 
@@ -15,7 +16,7 @@ class IFSMORPH_UL_pairs(bpy.types.UIList):
         words = row.row(align=True)
         words.ui_units_x = 4.5
         words.label(text=f"{item.initial}  \N{RIGHTWARDS ARROW}  {item.final}")
-        row.label(text=item.symmetry)
+        row.label(text=described(item))
         if item.winding:
             turns = row.row(align=True)
             turns.ui_units_x = 1.6
