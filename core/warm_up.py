@@ -23,6 +23,7 @@ from .enclosure import norm
 from .ifs import IFS
 from .kernels import Kernel
 from .locus import compute_locus
+from .matching import match
 from .morph import Morph
 from .path import plan_path
 from .raster import fit_window, render
@@ -80,7 +81,11 @@ def _paths() -> None:
         plan_path(morph, compute_locus(morph, RESOLUTION, threads=1, gap=False), 8, threads=1)
 
 
-PARTS = {"pictures": (_pictures, _points), "paths": (_shapes, _paths)}
+def _matches() -> None:
+    match(SHAPES["twindragon"], SHAPES["square"], 8, threads=1)
+
+
+PARTS = {"pictures": (_pictures, _points), "paths": (_shapes, _paths, _matches)}
 """What takes about as long as another, for as many processes."""
 
 

@@ -108,7 +108,7 @@ def test_adding_appends_and_selects(owner, end):
     bpy.ops.ifs_morph.map_add(end=end)
     assert len(shape.maps) == 4
     assert shape.active_index == 3
-    assert np.linalg.norm(_matrix(shape.maps[3])[:, :2], 2) < 1
+    np.testing.assert_array_equal(_matrix(shape.maps[3]), [[0.5, 0, 0], [0, 0.5, 0]])
 
 
 @pytest.mark.parametrize("end", ENDS)
