@@ -1,0 +1,150 @@
+"""One press of Morph in a Blender with a window: shapes with different numbers of maps, Esc, pairs edited and undone.
+
+    blender --enable-event-simulate --window-geometry 0 0 1600 900 --python tests/gui/matching.py \
+        -- OUTPUT_FOLDER [SCREENSHOT COMMAND]
+
+The command gets the picture's path appended; without one Blender itself takes the pictures. Needs the extension to be
+installed. One thing is done at each tick of a timer, so that Blender draws in between. Ends by itself and prints PASSED
+or FAILED.
+"""
+
+import subprocess
+import sys
+import traceback
+from pathlib import Path
+
+import addon_utils
+import bpy
+
+OUTPUT, *COMMAND = sys.argv[sys.argv.index("--") + 1 :]
+OUTPUT = Path(OUTPUT)
+MODULE = next(module.__name__ for module in addon_utils.modules() if module.__name__.endswith(".ifs_morph"))
+
+
+def window():
+    return bpy.context.window_manager.windows[0]
+
+
+def viewport():
+    return next(area for area in window().screen.areas if area.type == "VIEW_3D")
+
+
+def region(kind="WINDOW"):
+    return next(region for region in viewport().regions if region.type == kind)
+
+
+def press(operator, **options):
+    """Press a button of the viewport."""
+    with bpy.context.temp_override(window=window(), area=viewport(), region=region()):
+        return operator("INVOKE_DEFAULT", **options)
+
+
+def event(kind, value="PRESS"):
+    """Have a person press a key over the viewport."""
+    middle = region().x + region().width // 2, region().y + region().height // 2
+    window().event_simulate(type=kind, value=value, x=middle[0], y=middle[1])
+
+
+def settings():
+    return bpy.context.view_layer.objects.active.ifs_morph
+
+
+def picture(name):
+    path = str(OUTPUT / f"{name}.png")
+    if COMMAND:
+        subprocess.run([*COMMAND, path], check=True)
+    else:
+        with bpy.context.temp_override(window=window()):
+            bpy.ops.screen.screenshot(filepath=path)
+
+
+def working():
+    """Whether an operator is still busy."""
+    return any(operator.bl_idname.startswith("IFS_MORPH") for operator in window().modal_operators)
+
+
+def words():
+    return [(item.initial, item.final) for item in settings().matching.pairs]
+
+
+def steps():
+    """One thing after the other; yields whenever Blender is to draw."""
+    viewport().spaces.active.show_region_ui = True
+    viewport().spaces.active.shading.color_type = "TEXTURE"
+    for thing in list(bpy.data.objects):
+        bpy.data.objects.remove(thing)
+    yield
+    region("UI").active_panel_category = "IFS Morph"
+    yield
+    press(bpy.ops.object.ifs_morph_add, kind="IMAGE")
+    settings().output.mode = "ATTRACTORLET"
+    press(bpy.ops.view3d.view_axis, type="FRONT")
+    yield
+    press(bpy.ops.view3d.view_selected)
+    press(bpy.ops.ifs_morph.load_shape, end="INITIAL", shape="Koch curve")
+    press(bpy.ops.ifs_morph.load_shape, end="FINAL", shape="gasket")
+    settings().path.frame_end = 120
+    yield
+    picture("1_four_maps_and_three")
+
+    press(bpy.ops.ifs_morph.morph)
+    yield
+    picture("2_searching")
+    event("ESC")
+    while working():
+        yield
+    yield
+    # There is a first answer after a moment; Esc keeps it, or changes nothing if it comes before that.
+    first = words()
+    picture("3_escaped")
+    press(bpy.ops.ifs_morph.morph)
+    yield
+    while working():
+        yield
+    yield
+    assert len(words()) >= 4
+    assert "all in one piece" in settings().path.report
+    bpy.context.scene.frame_set(60)
+    yield
+    picture("4_morphed")
+    print("after Esc:", len(first), "in the end:", len(words()))
+    print(settings().path.report)
+
+    before = words()
+    press(bpy.ops.ifs_morph.pair_swap, direction="DOWN")
+    yield
+    assert words() != before
+    picture("5_swapped")
+    press(bpy.ops.ifs_morph.pairs_lock, action="LOCK")
+    press(bpy.ops.ifs_morph.pair_split, end="INITIAL")
+    press(bpy.ops.ifs_morph.pair_symmetry, end="FINAL")
+    settings().matching.pairs[0].winding = 1
+    yield
+    picture("6_split_turned_wound_locked")
+    for _ in range(4):
+        press(bpy.ops.ed.undo)
+        yield
+    press(bpy.ops.ifs_morph.map_remove, end="FINAL")
+    yield
+    yield
+    picture("7_no_longer_fit")
+
+
+def tick(running=steps()):  # noqa: B008 -- one run of the steps, kept between the calls
+    try:
+        next(running)
+        return 1.0
+    except StopIteration:
+        print("PASSED")
+    except Exception:
+        traceback.print_exc()
+        picture("failed")
+        print("FAILED")
+    bpy.ops.wm.quit_blender()
+    return None
+
+
+if not addon_utils.check(MODULE)[1]:
+    addon_utils.enable(MODULE)
+bpy.context.preferences.view.show_splash = False
+bpy.app.timers.register(tick, first_interval=3.0)
