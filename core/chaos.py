@@ -1,7 +1,8 @@
 """The chaos game on a canvas, for attractors that overlap themselves too much to be taken apart into words.
 
-A point is moved by one map after another, drawn by chance as often as the weights say, and leaves a trace in the pixels
-that it comes by (Barnsley & Demko 1985). The draws are fixed: a run of points always makes the same, whatever the maps.
+A point is moved by one map after another, drawn by chance as often as weights and transitions say, and leaves a trace
+in the pixels that it comes by (Barnsley & Demko 1985). The draws are fixed: a run of points always makes the same,
+whatever the maps.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ from itertools import pairwise
 import numpy as np
 
 from . import parallel
+from .grammar import game_grammar, set_grammar
 from .kernels import njit
-from .words import cumulated, fixed_point
+from .words import origins
 
 RUN = 2**16
 """Points of one run."""
@@ -30,6 +32,7 @@ def mark(
     labels: np.ndarray,
     samples: float,
     threads: int | None,
+    transitions: np.ndarray | None = None,
 ) -> None:
     """Raise the pixels that the game comes by to the label of the map that led there.
 
@@ -46,8 +49,11 @@ def mark(
     samples : float
         Points for each pixel of the canvas; all in all they are rounded up to a power of two.
     threads : int, optional
+    transitions : (N, N), optional
+        Of a recurrent IFS.
     """
-    for marks, _ in _games(canvas.shape, root, maps, weights, labels, _runs(canvas, samples), threads):
+    runs = _runs(canvas, samples)
+    for marks, _ in _games(canvas.shape, root, maps, weights, transitions, labels, runs, threads):
         np.maximum(canvas, marks, out=canvas)
 
 
@@ -59,10 +65,11 @@ def deposit(
     samples: float,
     mass: int,
     threads: int | None,
+    transitions: np.ndarray | None = None,
 ) -> None:
     """Add `mass`, a large power of two, to the pixels that the game comes by, in equal parts; otherwise as `mark`."""
     runs = _runs(canvas, samples)
-    for _, hits in _games(canvas.shape, root, maps, weights, np.zeros(0, np.uint8), runs, threads):
+    for _, hits in _games(canvas.shape, root, maps, weights, transitions, np.zeros(0, np.uint8), runs, threads):
         canvas += hits * (mass // (runs * RUN))
 
 
@@ -70,17 +77,21 @@ def _runs(canvas: np.ndarray, samples: float) -> int:
     return 1 << max(math.ceil(math.log2(samples * canvas.size / RUN)), 0)
 
 
-def _games(shape, root, maps, weights, labels, runs, threads) -> list[tuple[np.ndarray, np.ndarray]]:
+def _games(shape, root, maps, weights, transitions, labels, runs, threads) -> list[tuple[np.ndarray, np.ndarray]]:
     """Marks and hits, one of them empty, of the runs that each thread has played."""
     height, width = shape
-    borders = cumulated(weights)
-    guide = np.searchsorted(borders, np.arange(2**GUIDE_BITS) / 2**GUIDE_BITS, side="right") - 1
-    start = fixed_point(maps[0])
+    rules = game_grammar(weights, transitions)
+    first_bits = np.arange(2**GUIDE_BITS) / 2**GUIDE_BITS
+    guide = np.array([np.searchsorted(borders, first_bits, side="right") - 1 for borders in rules.borders])
+    starts = origins(maps, set_grammar(weights, transitions))
+    # Runs start in the attractorlets as often as a game is in them, since it need not come from each to each.
+    turns = (np.arange(runs) + 0.5) / runs
+    letters = np.searchsorted(rules.borders[-1], turns, side="right") - 1 if len(starts) > 1 else np.zeros(runs, int)
 
     def game(share: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
         marks = np.zeros(height * width if len(labels) else 0, np.uint8)
         hits = np.zeros(0 if len(labels) else height * width, np.int64)
-        play(root, maps, borders, guide, labels, start, *share, height, width, marks, hits)
+        play(root, maps, rules, guide, labels, starts, letters, *share, height, width, marks, hits)
         return marks.reshape(-1, width), hits.reshape(-1, width)
 
     bounds = np.linspace(0, runs, min(parallel.thread_count(threads), runs) + 1).astype(int)
@@ -88,21 +99,24 @@ def _games(shape, root, maps, weights, labels, runs, threads) -> list[tuple[np.n
 
 
 @njit(nogil=True, cache=True)
-def play(root, maps, borders, guide, labels, start, first_run, last_run, height, width, marks, hits):
-    """Play the runs from `first_run` to `last_run` (exclusive), each from `start`, into `marks` or else `hits`.
+def play(root, maps, rules, guide, labels, starts, letters, first_run, last_run, height, width, marks, hits):
+    """Play the runs from `first_run` to `last_run` (exclusive), each from its letter's start, for `marks` or `hits`.
 
     Random numbers are by xorshift64* (Vigna 2016), seeded by the number of the run.
     """
     for run in range(first_run, last_run):
         state = np.uint64(run + 1) * np.uint64(0x9E3779B97F4A7C15)
-        x, y = start[0], start[1]
+        i = letters[run]
+        x, y = starts[i, 0], starts[i, 1]
         for _ in range(RUN):
             state ^= state >> np.uint64(12)
             state ^= state << np.uint64(25)
             state ^= state >> np.uint64(27)
             bits = (state * np.uint64(0x2545F4914F6CDD1D)) >> np.uint64(11)
             chance = np.float64(bits) * 2.0**-53
-            i = guide[bits >> np.uint64(53 - GUIDE_BITS)]
+            row = rules.state[i]
+            borders = rules.borders[row]
+            i = guide[row, bits >> np.uint64(53 - GUIDE_BITS)]
             while borders[i + 1] <= chance:
                 i += 1
             x, y = (

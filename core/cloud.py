@@ -5,7 +5,8 @@ interval among the maps, each part again, and so on: the letters of the address 
 (arithmetic decoding). So the address depends on n and the weights alone.
 
 A word whose part has come down to `FEW` points or less goes on with the address that its points have in a cloud of so
-many. Such small clouds are made once for each number of points, and put under all words with as many.
+many. Such small clouds are made once for each number of points, and put under all words with as many. In a recurrent
+IFS the parts depend on the letter before, so there is a small cloud for each number and state (`grammar`).
 """
 
 from __future__ import annotations
@@ -18,9 +19,10 @@ import numpy as np
 
 from . import parallel
 from .enclosure import norm
+from .grammar import word_grammar
 from .ifs import IFS
 from .kernels import njit
-from .words import IDENTITY, LETTER, cumulated, fixed_point, grown, unit_maps
+from .words import IDENTITY, LETTER, STATE, grown, state_points, unit_maps
 
 FEW = 256
 """Points that a word and a small cloud have at most."""
@@ -62,8 +64,9 @@ def point_cloud(
     address_weights: np.ndarray | None = None,
     threads: int | None = None,
     placing: tuple[float, float, float] | None = None,
+    address_transitions: np.ndarray | None = None,
 ) -> Points:
-    """Points of an attractor, spread by the weights.
+    """Points of an attractor, spread as the weights and transitions say.
 
     Parameters
     ----------
@@ -77,6 +80,10 @@ def point_cloud(
     placing : (x, y, unit), optional
         Put the points into a space of three dimensions, with its origin at a place of the plane and the length 1 for so
         many units of the plane. Positions and radii are in that space, and the third coordinate is zero.
+
+    address_transitions : (N, N), optional
+        Transitions that give the addresses, those of `ifs` by default. Points of addresses that `ifs` does not allow
+        are not on its attractor.
 
     Raises
     ------
@@ -97,11 +104,12 @@ def point_cloud(
         x, y, unit = placing
         center, radius, dimensions = (center - (x, y)) / unit, radius / unit, 3
     points = Points(np.empty((count, dimensions), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
-    borders = cumulated(weights)
-    words = share_out(maps, borders, count)
-    # Every point is the image of one point of the attractor: the fixed point of the map with the most weight.
-    seed = fixed_point(maps[np.argmax(weights)])
-    start, small = small_clouds(maps, np.ascontiguousarray(ifs.norms), borders, seed, words)
+    grammar = word_grammar(weights, ifs.transitions if address_transitions is None else address_transitions)
+    words = share_out(maps, grammar, count)
+    # Every point is the image of one point of the attractor, for each state: the fixed point of the map with the most
+    # weight, where maps follow each other freely.
+    seeds = state_points(maps, grammar, grammar.shares.argmax(axis=1))
+    start, small = small_clouds(maps, np.ascontiguousarray(ifs.norms), grammar, seeds, words)
     small = [np.ascontiguousarray(column) for column in small.T]
     bounds = np.float32(RADIUS_RANGE) * np.float32(radius / math.sqrt(max(count, 1)))
     found = points.position.reshape(-1), points.attractorlet, points.radius
@@ -115,22 +123,23 @@ def point_cloud(
 
 
 @njit(nogil=True, cache=True)
-def share_out(maps, borders, count):
-    """Words of one letter or more that share out the points from 0 to `count`, as a table (M, 9) in their order.
+def share_out(maps, grammar, count):
+    """Words of one letter or more that share out the points from 0 to `count`, as a table (M, 10) in their order.
 
     Each has FEW points at most.
     """
-    words, found = np.empty((256, 9)), 0
-    # Columns of the stack: the map, the ends of the word's part of the interval from 0 to `count`, the first letter.
-    stack, top = np.empty((64 + maps.shape[0], 9)), 1
+    words, found = np.empty((256, 10)), 0
+    # Columns of the stack: the map, the ends of the word's part of the interval from 0 to `count`, the first letter,
+    # and the state after the last.
+    stack, top = np.empty((64 + maps.shape[0], 10)), 1
     for k in range(6):
         stack[0, k] = IDENTITY[k]
-    stack[0, 6], stack[0, 7], stack[0, 8] = 0.0, count, -1.0
+    stack[0, 6], stack[0, 7], stack[0, 8], stack[0, STATE] = 0.0, count, -1.0, grammar.borders.shape[0] - 1
     while top > 0:
         top -= 1
         a, b, e = stack[top, 0], stack[top, 1], stack[top, 2]
         c, d, f = stack[top, 3], stack[top, 4], stack[top, 5]
-        low, high, letter = stack[top, 6], stack[top, 7], stack[top, 8]
+        low, high, letter, state = stack[top, 6], stack[top, 7], stack[top, 8], int(stack[top, STATE])
         first, last = math.ceil(low - 0.5), math.ceil(high - 0.5)
         if first == last:
             continue
@@ -141,68 +150,72 @@ def share_out(maps, borders, count):
                 words[found, 0], words[found, 1], words[found, 2] = a, b, e
                 words[found, 3], words[found, 4], words[found, 5] = c, d, f
                 words[found, FIRST], words[found, COUNT] = start, min(FEW, last - start)
-                words[found, LETTER] = letter
+                words[found, LETTER], words[found, STATE] = letter, state
                 found += 1
             continue
         if top + maps.shape[0] > stack.shape[0]:
             stack = grown(stack, 2 * stack.shape[0] + maps.shape[0])
-        right = high
+        right, borders = high, grammar.borders[state]
         for i in range(maps.shape[0] - 1, -1, -1):
             left = low + (high - low) * borders[i]
             p, q, r, s, t, u = maps[i, 0], maps[i, 1], maps[i, 2], maps[i, 3], maps[i, 4], maps[i, 5]
             stack[top, 0], stack[top, 1], stack[top, 2] = a * p + b * s, a * q + b * t, a * r + b * u + e
             stack[top, 3], stack[top, 4], stack[top, 5] = c * p + d * s, c * q + d * t, c * r + d * u + f
             stack[top, 6], stack[top, 7], stack[top, 8] = left, right, letter if letter >= 0 else i
+            stack[top, STATE] = grammar.state[i]
             right = left
             top += 1
     return words[:found]
 
 
 @njit(nogil=True, cache=True)
-def small_clouds(maps, norms, borders, seed, words):
+def small_clouds(maps, norms, grammar, seeds, words):
     """Clouds of as many points as the words have.
 
     Returns
     -------
-    start : (FEW + 1,) int64
-        The cloud of n points has the rows from start[n] on, if a word has so many.
+    start : (S, FEW + 1) int64
+        The cloud of n points of a state has the rows from start[state, n] on, if such a word has so many.
     points : (P, 3)
         x, y, and the radius, in units of the enclosing disc.
     """
-    start, end = np.full(FEW + 1, -1, np.int64), 0
+    states = seeds.shape[0]
+    start, end = np.full((states, FEW + 1), -1, np.int64), 0
     for w in range(words.shape[0]):
-        count = int(words[w, COUNT])
-        if start[count] < 0:
-            start[count] = end
+        count, state = int(words[w, COUNT]), int(words[w, STATE])
+        if start[state, count] < 0:
+            start[state, count] = end
             end += count
     points = np.empty((end, 3))
     stack = np.empty((256, 9))
-    for count in range(1, FEW + 1):
-        if start[count] >= 0:
-            stack = _decode(maps, norms, borders, seed, count, points[start[count] : start[count] + count], stack)
+    for state in range(states):
+        for count in range(1, FEW + 1):
+            first = start[state, count]
+            if first >= 0:
+                stack = _decode(maps, norms, grammar, seeds, state, count, points[first : first + count], stack)
     return start, points
 
 
 @njit(nogil=True, cache=True)
-def _decode(maps, norms, borders, seed, count, points, stack):
+def _decode(maps, norms, grammar, seeds, state, count, points, stack):
     """Fill in a cloud of `count` points, each at the end of the first word that is its alone. Returns the stack.
 
-    A word that is down to one point takes it to where its last letter takes the seed. The letter's norm stands for
-    what the letter does to the word's size.
+    A word that is down to one point takes it to where its last letter takes the seed of the state after it. The
+    letter's norm stands for what the letter does to the word's size.
     """
     for k in range(6):
         stack[0, k] = IDENTITY[k]
-    stack[0, 6], stack[0, 7] = 0.0, count
+    stack[0, 6], stack[0, 7], stack[0, 8] = 0.0, count, state
     top = 1
     while top > 0:
         top -= 1
         a, b, e = stack[top, 0], stack[top, 1], stack[top, 2]
         c, d, f = stack[top, 3], stack[top, 4], stack[top, 5]
-        low, high = stack[top, 6], stack[top, 7]
+        low, high, state = stack[top, 6], stack[top, 7], int(stack[top, 8])
         size = norm(a, b, c, d)
         if top + maps.shape[0] > stack.shape[0]:
             stack = grown(stack, 2 * stack.shape[0] + maps.shape[0])
-        right = high
+        right, borders = high, grammar.borders[state]
         for i in range(maps.shape[0] - 1, -1, -1):
             left = low + (high - low) * borders[i]
             first, last = math.ceil(left - 0.5), math.ceil(right - 0.5)
@@ -210,14 +223,15 @@ def _decode(maps, norms, borders, seed, count, points, stack):
                 p, q, r, s, t, u = maps[i, 0], maps[i, 1], maps[i, 2], maps[i, 3], maps[i, 4], maps[i, 5]
                 if last - first == 1 or size < INVISIBLE:
                     # A point stands for a part of length 1; area is taken to be spread as weight is.
-                    across, along = p * seed[0] + q * seed[1] + r, s * seed[0] + t * seed[1] + u
+                    seed_x, seed_y = seeds[grammar.state[i], 0], seeds[grammar.state[i], 1]
+                    across, along = p * seed_x + q * seed_y + r, s * seed_x + t * seed_y + u
                     for k in range(first, last):
                         points[k, 0], points[k, 1] = a * across + b * along + e, c * across + d * along + f
                         points[k, 2] = size * norms[i] / math.sqrt(right - left)
                 else:
                     stack[top, 0], stack[top, 1], stack[top, 2] = a * p + b * s, a * q + b * t, a * r + b * u + e
                     stack[top, 3], stack[top, 4], stack[top, 5] = c * p + d * s, c * q + d * t, c * r + d * u + f
-                    stack[top, 6], stack[top, 7] = left, right
+                    stack[top, 6], stack[top, 7], stack[top, 8] = left, right, grammar.state[i]
                     top += 1
             right = left
     return stack
@@ -230,7 +244,7 @@ def place(words, start, x, y, size, center, radius, bounds, dimensions, position
         a, b, e = radius * words[w, 0], radius * words[w, 1], radius * words[w, 2] + center[0]
         c, d, f = radius * words[w, 3], radius * words[w, 4], radius * words[w, 5] + center[1]
         first, count, letter = int(words[w, FIRST]), int(words[w, COUNT]), np.int32(words[w, LETTER])
-        begin = start[count]
+        begin = start[int(words[w, STATE]), count]
         last, end = first + count, begin + count
         px, py = x[begin:end], y[begin:end]
         spot = position[first * dimensions : last * dimensions]

@@ -36,7 +36,7 @@ def mark(canvas: np.ndarray, words: np.ndarray, labels: np.ndarray, sets: PointS
     ----------
     canvas : (height, width) uint8
         Written to.
-    words : (M, 9)
+    words : (M, 10)
         In pixels, see `words.cut_words`.
     labels : (M,) uint8
     sets : PointSets
@@ -59,7 +59,7 @@ def deposit(canvas: np.ndarray, words: np.ndarray, sets: PointSets, threads: int
     ----------
     canvas : (height, width) int64
         Added to; a word of mass m in a cut adds ``m * POINT_MASS`` units.
-    words : (M, 9)
+    words : (M, 10)
         In pixels, see `words.cut_words`.
     sets : PointSets
         `pieces.measures`.

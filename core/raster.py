@@ -13,9 +13,10 @@ from collections.abc import Iterable
 import numpy as np
 
 from . import chaos, drawing, spreading
+from .grammar import set_grammar, word_grammar
 from .ifs import IFS, Contractivity, IFSError
 from .pieces import LARGEST_GRID, measures, outlines
-from .words import LETTER, WORD_MASS, cumulated, cut_dimensions, cut_words, unit_maps
+from .words import LETTER, WORD_MASS, cut_dimensions, cut_words, unit_maps
 
 MODES = ("set", "density", "attractorlet")
 
@@ -100,8 +101,8 @@ def render(
     -------
     (height, width)
         Row 0 is the lowest. *Set*: `dtype`, 1 where the attractor meets a pixel and 0 elsewhere. *Density*: int64, the
-        measure that the weights give, `TOTAL_MASS` of it for the whole attractor. *Attractorlet*: uint8, 0 where there
-        is none and 1 + i for attractorlet i, the last of those that meet the pixel.
+        measure that weights and transitions give, `TOTAL_MASS` of it for the whole attractor. *Attractorlet*: uint8, 0
+        where there is none and 1 + i for attractorlet i, the last of those that meet the pixel.
 
     Raises
     ------
@@ -129,43 +130,48 @@ def render(
         )
     root = np.array([radius * across, 0.0, (center[0] - x0) * across, 0.0, radius * along, (center[1] - y0) * along])
     labels = np.arange(1, ifs.count + 1, dtype=np.uint8) if mode == "attractorlet" else np.ones(ifs.count, np.uint8)
-    weights = ifs.weights
-    growth, dimension = cut_dimensions(maps, norms) if len(norms) else (np.inf, np.inf)
+    weights, transitions = ifs.weights, ifs.transitions
+    grammar_of = word_grammar if mode == "density" else set_grammar
+    grammar = grammar_of(weights, transitions)
+    growth, dimension = cut_dimensions(maps, norms, grammar) if len(norms) else (np.inf, np.inf)
     if growth > FIXED_GROWTH:
         norms = np.zeros(0)
-        maps, weights, labels = _distinct(maps, weights, labels)
-        growth, dimension = cut_dimensions(maps, norms)
+        if transitions is None:
+            maps, weights, labels = _distinct(maps, weights, labels)
+            grammar = grammar_of(weights, None)
+        growth, dimension = cut_dimensions(maps, norms, grammar)
     canvas = np.zeros((height, width), np.int64 if mode == "density" else np.uint8)
     if growth <= GROWTH_LIMIT:
-        _draw(canvas, root, maps, norms, weights, labels, growth, dimension, samples, threads)
+        _draw(canvas, root, maps, norms, grammar, labels, growth, dimension, samples, threads)
     elif mode == "density":
-        chaos.deposit(canvas, root, maps, weights, max(samples, CHAOS_POINTS), TOTAL_MASS, threads)
-    elif not spreading.mark(canvas, root, maps, labels):
-        chaos.mark(canvas, root, maps, weights, labels, max(samples, CHAOS_POINTS), threads)
+        chaos.deposit(canvas, root, maps, weights, max(samples, CHAOS_POINTS), TOTAL_MASS, threads, transitions)
+    elif not spreading.mark(canvas, root, maps, labels, transitions):
+        chaos.mark(canvas, root, maps, weights, labels, max(samples, CHAOS_POINTS), threads, transitions)
     return canvas.astype(dtype, copy=False) if mode == "set" else canvas
 
 
-def _draw(canvas, root, maps, norms, weights, labels, growth, dimension, samples, threads) -> None:
+def _draw(canvas, root, maps, norms, grammar, labels, growth, dimension, samples, threads) -> None:
     """Draw words into the canvas, their mass if it holds 64 bit integers and their labels otherwise."""
     density = canvas.dtype == np.int64
     height, width = canvas.shape
     side = math.sqrt(width * height)
     extent = _extent(2 * max(root[0], root[4]), side, norms)
     cell, piece, ratio = _resolution(density, samples, growth, dimension, extent, side)
-    shown, borders = np.array([0.0, 0.0, width, height]), cumulated(weights)
+    shown, first = np.array([0.0, 0.0, width, height]), len(grammar.allowed) - 1
     while True:
         budget = int(MOST_POINTS * canvas.size / min(piece / cell, LARGEST_GRID) ** 2) + LEAST_BUDGET
-        words = cut_words(root, maps, norms, extent, piece, borders, shown, budget)
+        words = cut_words(root, maps, norms, extent, piece, grammar, first, shown, budget)
         if len(words) <= budget or piece > extent:
             break
         piece *= 4
     # Sets are half octaves below the extent, so that maps that scale by one or more of these lead from set to set.
     smallest = extent * 2 ** (round(2 * math.log2(cell / extent)) / 2)
     if density:
-        drawing.deposit(canvas, words, measures(maps, norms, weights, cell, smallest, piece, ratio), threads)
+        drawing.deposit(canvas, words, measures(maps, norms, grammar, cell, smallest, piece, ratio), threads)
     else:
         letters = words[:, LETTER].astype(np.int64)
-        drawing.mark(canvas, words, labels[letters], outlines(maps, norms, cell, smallest, piece, ratio), threads)
+        sets = outlines(maps, norms, grammar, cell, smallest, piece, ratio)
+        drawing.mark(canvas, words, labels[letters], sets, threads)
 
 
 def fit_window(shapes: IFS | Iterable[IFS], size: tuple[int, int], margin: float = 0.05) -> Window:

@@ -13,11 +13,13 @@ import math
 
 import numpy as np
 
+from .affine import compose, transform
 from .enclosure import norm
+from .grammar import Grammar, state_count
 from .ifs import IFS
 from .kernels import njit
 
-SIZE, MASS, LETTER = 6, 7, 8
+SIZE, MASS, LETTER, STATE = 6, 7, 8, 9
 """Columns of a table of words, after the six of the map."""
 
 WORD_MASS = 2.0**40
@@ -65,15 +67,44 @@ def fixed_point(entries: np.ndarray) -> np.ndarray:
     return np.linalg.solve([[1 - a, -b], [-c, 1 - d]], [e, f])
 
 
-def cumulated(weights: np.ndarray) -> np.ndarray:
-    """Borders (N + 1,) of the parts, 0 to 1, that the maps have in an address."""
-    borders = np.concatenate([[0.0], np.minimum(np.cumsum(weights / weights.sum()), 1.0)])
-    borders[np.flatnonzero(weights)[-1] + 1 :] = 1.0
-    return borders
+def state_points(maps: np.ndarray, grammar: Grammar, choice: np.ndarray) -> np.ndarray:
+    """A point (S, 2) of what may come after each state, such as a map's fixed point.
+
+    Parameters
+    ----------
+    maps : (N, 6)
+    grammar : Grammar
+    choice : (S,)
+        An allowed letter for each state: the point's address takes it whenever it comes to that state.
+    """
+    points = np.empty((state_count(grammar), 2))
+    for state in range(len(points)):
+        letters, visits, at = [], {}, state
+        while at not in visits:
+            visits[at] = len(letters)
+            letters.append(choice[at])
+            at = grammar.state[letters[-1]]
+        again = visits[at]
+        around = maps[letters[again]].reshape(2, 3)
+        for letter in letters[again + 1 :]:
+            around = compose(around, maps[letter].reshape(2, 3))
+        point = fixed_point(around.ravel())
+        for letter in reversed(letters[:again]):
+            point = transform(maps[letter].reshape(2, 3), point)
+        points[state] = point
+    return points
+
+
+def origins(maps: np.ndarray, grammar: Grammar) -> np.ndarray:
+    """Points of the attractor to start from: one (1, 2) of a plain IFS, else one (N, 2) of each attractorlet."""
+    if len(grammar.allowed) == 1:
+        return fixed_point(maps[0])[None]
+    points = state_points(maps, grammar, grammar.allowed.argmax(axis=1))[grammar.state]
+    return transform(maps.reshape(-1, 2, 3), points[:, None])[:, 0]
 
 
 @njit(nogil=True, cache=True)
-def cut_words(root, maps, norms, extent, limit, borders, window, budget):
+def cut_words(root, maps, norms, extent, limit, grammar, state, window, budget):
     """Cut words where their size is at most `limit`, leaving out those that the window does not show.
 
     Parameters
@@ -88,8 +119,10 @@ def cut_words(root, maps, norms, extent, limit, borders, window, budget):
         Size of the empty word, where there are norms.
     limit : float
         Every word of the cut has at least one letter, however large the limit.
-    borders : (N + 1,)
-        Parts of the maps in a word's mass, see `cumulated`.
+    grammar : Grammar
+        Which letters may come next, and what parts of a word's mass they take.
+    state : int
+        Row of the grammar for the empty word: the last, or another state whose part of the attractor is wanted.
     window : (4,)
         Least x and y, largest x and y.
     budget : int
@@ -97,22 +130,24 @@ def cut_words(root, maps, norms, extent, limit, borders, window, budget):
 
     Returns
     -------
-    words : (M, 9)
-        In the order of their letters: the map, and in the columns SIZE, MASS and LETTER the size, the mass and the
-        first letter. The masses are whole and add up to `WORD_MASS` where the window shows all words. One row more
-        than `budget` if the cut was given up.
+    words : (M, 10)
+        In the order of their letters: the map, and in the columns SIZE, MASS, LETTER and STATE the size, the mass, the
+        first letter and the state after the last. The masses are whole and add up to `WORD_MASS` where the window
+        shows all words. One row more than `budget` if the cut was given up.
     """
     count = maps.shape[0]
-    words, found = np.empty((256, 9)), 0
-    stack, top = np.empty((64 + count, 9)), 1
+    words, found = np.empty((256, 10)), 0
+    stack, top = np.empty((64 + count, 10)), 1
     for k in range(6):
         stack[0, k] = root[k]
     stack[0, SIZE], stack[0, MASS], stack[0, LETTER] = extent, WORD_MASS, -1
+    stack[0, STATE] = state
     while top > 0 and found <= budget:
         top -= 1
         a, b, e = stack[top, 0], stack[top, 1], stack[top, 2]
         c, d, f = stack[top, 3], stack[top, 4], stack[top, 5]
         size, mass, letter = stack[top, SIZE], stack[top, MASS], stack[top, LETTER]
+        row = int(stack[top, STATE])
         # The image of the unit disc reaches hypot(a, b) to either side of (e, f), and hypot(c, d) up and down.
         across, along = math.sqrt(a * a + b * b), math.sqrt(c * c + d * d)
         if e + across < window[0] or f + along < window[1] or e - across > window[2] or f - along > window[3]:
@@ -122,20 +157,24 @@ def cut_words(root, maps, norms, extent, limit, borders, window, budget):
         if size <= limit and letter >= 0:
             if found == words.shape[0]:
                 words = grown(words, 2 * found)
-            for k in range(9):
+            for k in range(10):
                 words[found, k] = stack[top, k]
             words[found, SIZE] = size
             found += 1
             continue
         if top + count > stack.shape[0]:
             stack = grown(stack, 2 * stack.shape[0] + count)
+        allowed, borders = grammar.allowed[row], grammar.borders[row]
         for i in range(count - 1, -1, -1):
+            if not allowed[i]:
+                continue
             p, q, r, s, t, u = maps[i, 0], maps[i, 1], maps[i, 2], maps[i, 3], maps[i, 4], maps[i, 5]
             stack[top, 0], stack[top, 1], stack[top, 2] = a * p + b * s, a * q + b * t, a * r + b * u + e
             stack[top, 3], stack[top, 4], stack[top, 5] = c * p + d * s, c * q + d * t, c * r + d * u + f
             stack[top, SIZE] = size * norms[i] if norms.shape[0] > 0 else 0.0
             stack[top, MASS] = math.floor(mass * borders[i + 1]) - math.floor(mass * borders[i])
             stack[top, LETTER] = letter if letter >= 0 else i
+            stack[top, STATE] = grammar.state[i]
             top += 1
     return words[:found]
 
@@ -150,43 +189,60 @@ def grown(table, length):
     return longer
 
 
-def dimension(large: np.ndarray, small: np.ndarray) -> float:
-    """Dimension of an attractor whose parts have these singular values (M,), relative to all of it (Falconer 1988).
+def dimension(parts: list[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> float:
+    """Dimension of an attractor by the singular values of its parts, relative to all of it (Falconer 1988).
 
     It is the d, up to 2, with ``sum(large * small ** (d - 1)) = 1``, or below 1 with ``sum(large ** d) = 1``. For
     similarities that is ``sum(ratio ** d) = 1`` (Moran 1946): there are 2 ** d times as many parts of half the size,
-    which may be more than the plane has room for; the equation is used for any d where `large` is `small`.
+    which may be more than the plane has room for; the equation is used for any d where `large` is `small`. Where there
+    are several states, the spectral radius of the sums from state to state takes the place of the sum (Mauldin &
+    Williams 1988).
+
+    Parameters
+    ----------
+    parts : list of (large (M,), small (M,), state (M,))
+        For each state, what its part of the attractor is made of.
     """
     low, high = 0.0, 1.0
-    while high < 1000 and _total(large, small, high) > 1:
+    while high < 1000 and _total(parts, high) > 1:
         low, high = high, 2 * high
     while high - low > DIMENSION_PRECISION * max(high, 1.0):
         middle = (low + high) / 2
-        low, high = (middle, high) if _total(large, small, middle) > 1 else (low, middle)
+        low, high = (middle, high) if _total(parts, middle) > 1 else (low, middle)
     return high
 
 
-def _total(large: np.ndarray, small: np.ndarray, d: float) -> float:
-    return float((large ** min(d, 1.0) * small ** max(d - 1.0, 0.0)).sum())
+def _total(parts: list[tuple[np.ndarray, np.ndarray, np.ndarray]], d: float) -> float:
+    if len(parts) == 1:
+        large, small, _ = parts[0]
+        return float((large ** min(d, 1.0) * small ** max(d - 1.0, 0.0)).sum())
+    sums = [
+        np.bincount(state, large ** min(d, 1.0) * small ** max(d - 1.0, 0.0), len(parts))
+        for large, small, state in parts
+    ]
+    return float(np.abs(np.linalg.eigvals(sums)).max())
 
 
-def cut_dimensions(maps: np.ndarray, norms: np.ndarray) -> tuple[float, float]:
+def cut_dimensions(maps: np.ndarray, norms: np.ndarray, grammar: Grammar) -> tuple[float, float]:
     """Exponents by which words multiply in a cut as it gets finer, and by which the attractor fills the plane.
 
     Both are `dimension`; the first is that of parts as wide as they are long. They are infinite where half the size of
     the attractor already takes more than `DIMENSION_BUDGET` words.
     """
+    states = range(state_count(grammar))
     if len(norms):
-        growth = dimension(norms, norms)
+        parts = [(norms[allowed], grammar.state[allowed]) for allowed in grammar.allowed[: len(states)]]
+        growth = dimension([(large, large, state) for large, state in parts])
         return growth, growth
-    words = cut_words(
-        IDENTITY, maps, norms, 2.0, 2 * DIMENSION_SIZE, np.zeros(len(maps) + 1), EVERYWHERE, DIMENSION_BUDGET
-    )
-    if len(words) > DIMENSION_BUDGET:
-        return np.inf, np.inf
-    large = words[:, SIZE] / 2
-    area = np.abs(words[:, 0] * words[:, 4] - words[:, 1] * words[:, 3])
-    small = np.divide(area, large, out=np.zeros_like(area), where=large > 0)
-    growth = dimension(large, large)
-    similar = (small >= (1 - DIMENSION_PRECISION) * large).all()
-    return growth, growth if similar else dimension(large, small)
+    parts, similar = [], True
+    for state in states:
+        words = cut_words(IDENTITY, maps, norms, 2.0, 2 * DIMENSION_SIZE, grammar, state, EVERYWHERE, DIMENSION_BUDGET)
+        if len(words) > DIMENSION_BUDGET:
+            return np.inf, np.inf
+        large = words[:, SIZE] / 2
+        area = np.abs(words[:, 0] * words[:, 4] - words[:, 1] * words[:, 3])
+        small = np.divide(area, large, out=np.zeros_like(area), where=large > 0)
+        similar &= bool((small >= (1 - DIMENSION_PRECISION) * large).all())
+        parts.append((large, small, words[:, STATE].astype(np.int64)))
+    growth = dimension([(large, large, state) for large, _, state in parts])
+    return growth, growth if similar else dimension(parts)

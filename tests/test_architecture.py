@@ -37,6 +37,7 @@ CORE = (
     "path",
     # It ends with the path through the morph that it found.
     "matching",
+    "grammar",
     "words",
     "pieces",
     "chaos",

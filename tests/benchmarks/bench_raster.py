@@ -12,12 +12,13 @@ from numba import njit
 
 from core.affine import compose
 from core.drawing import deposit, mark
+from core.grammar import free_grammar
 from core.ifs import IFS
 from core.morph import Morph
 from core.pieces import measures, outlines
 from core.raster import MODES, fit_window, render
 from core.shapes import SHAPES
-from core.words import EVERYWHERE, cumulated, cut_words, unit_maps
+from core.words import EVERYWHERE, cut_words, unit_maps
 from tests.benchmarks.measuring import MEMORY_IS_TOLD, fastest, peak_memory
 
 HD = (1920, 1080)
@@ -194,15 +195,15 @@ def test_against_flam3(figure, tmp_path):
 
 def points_a_second(view, mode):
     """Return how many points are drawn a second, once they are there."""
-    weights, measured = view.ifs.weights, np.zeros(0)
-    words = cut_words(view.root, view.maps, measured, 0.0, 32.0, cumulated(weights), EVERYWHERE, 10**6)
+    grammar, measured = free_grammar(view.ifs.weights), np.zeros(0)
+    words = cut_words(view.root, view.maps, measured, 0.0, 32.0, grammar, 0, EVERYWHERE, 10**6)
     if mode == "set":
         canvas, labels = np.zeros(view.size[::-1], np.uint8), np.ones(len(words), np.uint8)
-        sets = outlines(view.maps, measured, 0.125, 0.125, 32.0, 8.0)
+        sets = outlines(view.maps, measured, grammar, 0.125, 0.125, 32.0, 8.0)
         seconds = fastest(lambda: mark(canvas, words, labels, sets, 1), 9)
     else:
         canvas = np.zeros(view.size[::-1], np.int64)
-        sets = measures(view.maps, measured, weights, 0.125, 0.125, 32.0, 8.0)
+        sets = measures(view.maps, measured, grammar, 0.125, 0.125, 32.0, 8.0)
         seconds = fastest(lambda: deposit(canvas, words, sets, 1), 9)
     return np.diff(sets.start)[sets.nearest(words)].sum() / seconds
 

@@ -19,13 +19,13 @@ def point_sets(seed=1, counts=(3, 50, 400)):
     start = np.concatenate([[0], np.cumsum(counts)])
     angle, radius = random.uniform(0, 2 * np.pi, start[-1]), np.sqrt(random.uniform(0, 1, start[-1]))
     x, y = (radius * np.cos(angle)).astype(np.float32), (radius * np.sin(angle)).astype(np.float32)
-    return PointSets(1.0, start, x, y, random.uniform(0, 1, start[-1]))
+    return PointSets(1.0, 1, start, x, y, random.uniform(0, 1, start[-1]))
 
 
 def words_of(seed, count=30):
     """Return words all over a canvas and beyond its border, of sizes that use all sets."""
     random = np.random.default_rng(seed)
-    words = np.zeros((count, 9))
+    words = np.zeros((count, 10))
     words[:, [0, 1, 3, 4]] = random.uniform(-1, 1, (count, 4)) * random.choice([0.3, 1, 4], (count, 1))
     words[:, 2], words[:, 5] = random.uniform(-5, WIDTH + 5, count), random.uniform(-5, HEIGHT + 5, count)
     words[:, SIZE] = random.uniform(0.5, 3, count)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from core.grammar import free_grammar
 from core.pieces import INSET, SIZES_PER_OCTAVE, hull_points, measures, outlines
 from core.shapes import SHAPES
 from core.words import unit_maps
@@ -32,7 +33,7 @@ def members(sets, k):
 @pytest.mark.parametrize("name", NAMES)
 def test_outlines_lie_on_the_attractor_and_miss_none_of_it(name):
     maps, points, spacing = unit(name)
-    sets = outlines(maps, MEASURED, CELL, SMALLEST, LARGEST, RATIO)
+    sets = outlines(maps, MEASURED, free_grammar(np.ones(len(maps))), CELL, SMALLEST, LARGEST, RATIO)
     for k in range(len(sets.start) - 1):
         # In units of the disc, which set k takes to be of so many pixels.
         pixel = 2 / (SMALLEST * 2 ** (k / SIZES_PER_OCTAVE))
@@ -47,7 +48,7 @@ def test_outlines_lie_on_the_attractor_and_miss_none_of_it(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_outlines_reach_as_far_as_the_attractor(name):
     maps, points, spacing = unit(name)
-    sets = outlines(maps, MEASURED, CELL, SMALLEST, LARGEST, RATIO)
+    sets = outlines(maps, MEASURED, free_grammar(np.ones(len(maps))), CELL, SMALLEST, LARGEST, RATIO)
     outline = members(sets, len(sets.start) - 2)
     pixel = 2 / LARGEST
     for angle in np.linspace(0, 2 * np.pi, 12, endpoint=False):
@@ -58,7 +59,7 @@ def test_outlines_reach_as_far_as_the_attractor(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_hull_points_reach_as_far_as_the_attractor(name):
     maps, points, spacing = unit(name)
-    hull = hull_points(maps, points[0])[:, :2]
+    hull = hull_points(maps, free_grammar(np.ones(len(maps))), points[:1])[0, :, :2]
     assert cKDTree(points).query(hull)[0].max() <= spacing
     for k in range(8):
         direction = np.array([np.cos(k * np.pi / 4), np.sin(k * np.pi / 4)])
@@ -69,7 +70,7 @@ def test_hull_points_reach_as_far_as_the_attractor(name):
 def test_measures_have_the_mass_and_the_center_of_the_attractor(name):
     ifs = SHAPES[name]
     maps, _, _ = unit_maps(ifs, 1e-9)
-    sets = measures(maps, MEASURED, ifs.weights, 0.25, 0.25, LARGEST, RATIO)
+    sets = measures(maps, MEASURED, free_grammar(ifs.weights), 0.25, 0.25, LARGEST, RATIO)
     # The moments of the invariant measure: m = sum of p_i w_i(m), by iteration.
     center = np.zeros(2)
     for _ in range(2000):
@@ -82,7 +83,7 @@ def test_measures_have_the_mass_and_the_center_of_the_attractor(name):
 
 def test_measures_hold_one_point_a_cell():
     maps, _, _ = unit_maps(SHAPES["maple leaf"], 1e-9)
-    sets = measures(maps, MEASURED, SHAPES["maple leaf"].weights, 0.25, 0.25, LARGEST, RATIO)
+    sets = measures(maps, MEASURED, free_grammar(SHAPES["maple leaf"].weights), 0.25, 0.25, LARGEST, RATIO)
     points = members(sets, len(sets.start) - 2)
     cells = np.floor((points + 1) / 2 * (LARGEST / 0.25)).astype(int)
     assert len(np.unique(cells, axis=0)) == len(points)
@@ -90,7 +91,7 @@ def test_measures_hold_one_point_a_cell():
 
 def test_a_word_gets_the_set_that_is_nearest_in_size():
     maps, _, _ = unit_maps(SHAPES["gasket"], 1e-9)
-    sets = outlines(maps, MEASURED, CELL, SMALLEST, LARGEST, RATIO)
-    words = np.zeros((6, 9))
+    sets = outlines(maps, MEASURED, free_grammar(np.ones(len(maps))), CELL, SMALLEST, LARGEST, RATIO)
+    words = np.zeros((6, 10))
     words[:, 6] = [0.0, 0.5, 0.59, 0.6, 4.0, 1000.0]
     assert sets.nearest(words).tolist() == [0, 0, 0, 1, 6, len(sets.start) - 2]

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from core.grammar import cumulated, free_grammar, set_grammar
 from core.shapes import SHAPES
 from core.words import (
     EVERYWHERE,
@@ -13,7 +14,6 @@ from core.words import (
     MASS,
     SIZE,
     WORD_MASS,
-    cumulated,
     cut_dimensions,
     cut_words,
     unit_maps,
@@ -25,7 +25,7 @@ PLENTY = 10**6
 
 def cut(ifs, limit, norms=MEASURED, window=EVERYWHERE, budget=PLENTY, root=IDENTITY):
     maps, _, _ = unit_maps(ifs, 1e-9)
-    return cut_words(root, maps, norms, 2.0, limit, cumulated(ifs.weights), window, budget)
+    return cut_words(root, maps, norms, 2.0, limit, free_grammar(ifs.weights), 0, window, budget)
 
 
 def test_maps_are_the_same_seen_from_the_unit_disc():
@@ -106,21 +106,36 @@ def test_borders_part_the_whole_interval(weights):
 )
 def test_the_dimension_of_similarities_is_morans(name, expected):
     ifs = SHAPES[name]
-    assert cut_dimensions(unit_maps(ifs, 1e-9)[0], MEASURED) == pytest.approx((expected, expected), rel=2e-3)
-    assert cut_dimensions(unit_maps(ifs, 1e-9)[0], ifs.norms) == pytest.approx((expected, expected), rel=2e-3)
+    assert cut_dimensions(unit_maps(ifs, 1e-9)[0], MEASURED, free_grammar(ifs.weights)) == pytest.approx(
+        (expected, expected), rel=2e-3
+    )
+    assert cut_dimensions(unit_maps(ifs, 1e-9)[0], ifs.norms, free_grammar(ifs.weights)) == pytest.approx(
+        (expected, expected), rel=2e-3
+    )
 
 
 def test_a_flat_attractor_fills_less_than_its_words_multiply():
     flat = np.array([[0.5, 0.0, -0.5, 0.0, 0.0, 0.0], [0.5, 0.0, 0.5, 0.0, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0, 0.0, 0.0]])
-    growth, dimension = cut_dimensions(flat, MEASURED)
+    growth, dimension = cut_dimensions(flat, MEASURED, free_grammar(np.ones(3)))
     assert growth == pytest.approx(np.log(3) / np.log(2), rel=2e-3)
     assert dimension == pytest.approx(1, rel=2e-3)
 
 
 def test_words_that_hardly_shrink_have_no_end():
     maps = np.tile([0.99, 0.0, 0.0, 0.0, 0.99, 0.0], (4, 1))
-    assert cut_dimensions(maps, MEASURED) == (np.inf, np.inf)
+    assert cut_dimensions(maps, MEASURED, free_grammar(np.ones(4))) == (np.inf, np.inf)
 
 
 def test_one_map_makes_one_point():
-    assert cut_dimensions(np.array([[0.5, 0.0, 0.0, 0.0, 0.5, 0.0]]), MEASURED) == pytest.approx((0, 0), abs=2e-3)
+    maps = np.array([[0.5, 0.0, 0.0, 0.0, 0.5, 0.0]])
+    assert cut_dimensions(maps, MEASURED, free_grammar(np.ones(1))) == pytest.approx((0, 0), abs=2e-3)
+
+
+def test_the_dimension_of_a_recurrent_ifs_is_that_of_its_graph():
+    """Quarters of the square of which none follows itself: three go on from each, so they triple at every half."""
+    ifs = SHAPES["square"]
+    grammar = set_grammar(ifs.weights, np.ones((4, 4)) - np.eye(4))
+    expected = np.log(3) / np.log(2)
+    for norms in (MEASURED, ifs.norms):
+        found = cut_dimensions(unit_maps(ifs, 1e-9)[0], norms, grammar)
+        assert found == pytest.approx((expected, expected), rel=2e-3)
