@@ -32,7 +32,9 @@ def cumulated(weights: np.ndarray) -> np.ndarray:
 def free_grammar(weights: np.ndarray) -> Grammar:
     """The grammar of a plain IFS of weights (N,), with one state."""
     count = len(weights)
-    return Grammar(np.zeros(count, np.int64), np.ones((1, count), bool), weights[None], cumulated(weights)[None])
+    # A copy, since kernels are compiled anew for arrays that cannot be written to.
+    shares = np.array(weights, dtype=float)[None]
+    return Grammar(np.zeros(count, np.int64), np.ones((1, count), bool), shares, cumulated(weights)[None])
 
 
 def state_count(grammar: Grammar) -> int:

@@ -100,7 +100,7 @@ def origins(maps: np.ndarray, grammar: Grammar) -> np.ndarray:
     if len(grammar.allowed) == 1:
         return fixed_point(maps[0])[None]
     points = state_points(maps, grammar, grammar.allowed.argmax(axis=1))[grammar.state]
-    return transform(maps.reshape(-1, 2, 3), points[:, None])[:, 0]
+    return transform(maps.reshape(-1, 2, 3), points)
 
 
 @njit(nogil=True, cache=True)
