@@ -117,7 +117,7 @@ def index_buffer(
             ifs.fixed_points[0].copy(),
             np.array([left - phase[0] % 1 * pixel, bottom - phase[1] % 1 * pixel]),
             pixel,
-            np.zeros((resolution + 2, resolution + 2), dtype=np.int64),
+            np.zeros((resolution + 2, resolution + 2), dtype=np.int16),
             int(iterations or 10 * resolution**2),
             early_exit,
             2 * seed + 1,  # a xorshift generator never leaves zero
