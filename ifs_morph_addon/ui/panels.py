@@ -51,9 +51,9 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
         row = column.row(align=True)
         row.prop(settings.matching, "budget", expand=True)
         layout.use_property_split = True
-        row = column.row()
-        row.use_property_decorate = False
-        row.prop(settings, "scheme")
+        column = layout.column()
+        column.use_property_decorate = False
+        column.prop(settings, "scheme")
         column = layout.column(align=True)
         column.prop(settings, "uv", index=0, text="U")
         column.prop(settings, "uv", index=1, text="V")

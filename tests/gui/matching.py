@@ -34,15 +34,24 @@ def region(kind="WINDOW"):
 
 
 def press(operator, **options):
-    """Press a button of the viewport."""
+    """Press a button of the viewport, which makes a step of undo."""
     with bpy.context.temp_override(window=window(), area=viewport(), region=region()):
-        return operator("INVOKE_DEFAULT", **options)
+        return operator("INVOKE_DEFAULT", True, **options)
 
 
-def event(kind, value="PRESS"):
-    """Have a person press a key over the viewport."""
-    middle = region().x + region().width // 2, region().y + region().height // 2
-    window().event_simulate(type=kind, value=value, x=middle[0], y=middle[1])
+def event(kind, over="WINDOW"):
+    """Have a person press a key over the viewport or its sidebar."""
+    place = region(over)
+    x, y = place.x + place.width // 2, place.y + place.height // 2
+    window().event_simulate(type="MOUSEMOVE", value="NOTHING", x=x, y=y)
+    window().event_simulate(type=kind, value="PRESS", x=x, y=y)
+
+
+def scroll(kind, times):
+    """Turn the wheel over the sidebar."""
+    for _ in range(times):
+        event(kind, over="UI")
+        yield
 
 
 def settings():
@@ -87,8 +96,10 @@ def steps():
     yield
     picture("1_four_maps_and_three")
 
+    settings().matching.budget = "THOROUGH"
     press(bpy.ops.ifs_morph.morph)
-    yield
+    for _ in range(4):
+        yield
     picture("2_searching")
     event("ESC")
     while working():
@@ -96,6 +107,7 @@ def steps():
     yield
     # There is a first answer after a moment; Esc keeps it, or changes nothing if it comes before that.
     first = words()
+    settings().matching.budget = "QUICK"
     picture("3_escaped")
     press(bpy.ops.ifs_morph.morph)
     yield
@@ -110,24 +122,28 @@ def steps():
     print("after Esc:", len(first), "in the end:", len(words()))
     print(settings().path.report)
 
+    yield from scroll("WHEELDOWNMOUSE", 12)
+    picture("5_list_of_pairs")
     before = words()
     press(bpy.ops.ifs_morph.pair_swap, direction="DOWN")
     yield
     assert words() != before
-    picture("5_swapped")
+    picture("6_swapped")
     press(bpy.ops.ifs_morph.pairs_lock, action="LOCK")
     press(bpy.ops.ifs_morph.pair_split, end="INITIAL")
     press(bpy.ops.ifs_morph.pair_symmetry, end="FINAL")
     settings().matching.pairs[0].winding = 1
     yield
-    picture("6_split_turned_wound_locked")
+    picture("7_split_turned_wound_locked")
     for _ in range(4):
-        press(bpy.ops.ed.undo)
+        with bpy.context.temp_override(window=window(), area=viewport(), region=region()):
+            bpy.ops.ed.undo()
         yield
+    assert words() == before
     press(bpy.ops.ifs_morph.map_remove, end="FINAL")
     yield
-    yield
-    picture("7_no_longer_fit")
+    yield from scroll("WHEELUPMOUSE", 12)
+    picture("8_no_longer_fit")
 
 
 def tick(running=steps()):  # noqa: B008 -- one run of the steps, kept between the calls
