@@ -64,6 +64,8 @@ def fitted(initial: IFS, final: IFS, matching) -> tuple[Pair, ...] | None:
 
 @lru_cache(maxsize=16)
 def _fitted(initial: IFS, final: IFS, pairs: tuple[Pair, ...]) -> tuple[Pair, ...] | None:
+    if initial.is_recurrent or final.is_recurrent:
+        return None
     pairs = tuple(
         Pair(
             pair.initial,

@@ -78,6 +78,8 @@ def words():
 
 def steps():
     """One thing after the other; yields whenever Blender is to draw."""
+    while sys.modules[f"{MODULE}.ifs_morph_addon.preparation"].is_running():
+        yield
     viewport().spaces.active.show_region_ui = True
     viewport().spaces.active.shading.color_type = "TEXTURE"
     for thing in list(bpy.data.objects):
