@@ -23,6 +23,9 @@ FIT_SAMPLES = 33
 NORM_SAMPLES = 129
 """Places along the path that the norms of the maps are taken over."""
 
+MOST_RECURRENT = 32
+"""Maps of a recurrent shape at most: the longest row of numbers that a property of Blender holds."""
+
 
 def identifier(name: str) -> str:
     """Blender's identifier of an enumeration item that core knows by a lower-case name."""
@@ -66,17 +69,36 @@ def shape_ifs(shape) -> IFS:
     """A shape as an IFS; raises IFSError."""
     weights = np.empty(len(shape.maps), dtype=np.float32)
     shape.maps.foreach_get("weight", weights)
-    return _ifs(shape_maps(shape).tobytes(), weights.tobytes(), shape.name)
+    transitions = shape_transitions(shape)
+    chances = None if transitions is None else transitions.tobytes()
+    return _ifs(shape_maps(shape).tobytes(), weights.tobytes(), shape.name, chances)
+
+
+def shape_transitions(shape) -> np.ndarray | None:
+    """Transitions (N, N) of a recurrent shape, None of a plain one; raises IFSError."""
+    count = len(shape.maps)
+    if not shape.recurrent:
+        return None
+    if count > MOST_RECURRENT:
+        raise IFSError(
+            f"The shape has {count} maps, and a recurrent one {MOST_RECURRENT} at most; "
+            "remove some or turn Recurrent off."
+        )
+    flat = np.empty(MOST_RECURRENT * count, dtype=np.float32)
+    shape.maps.foreach_get("transitions", flat)
+    return flat.reshape(-1, MOST_RECURRENT)[:, :count].astype(float)
 
 
 @lru_cache(maxsize=64)
-def _ifs(maps: bytes, weights: bytes, name: str) -> IFS:
+def _ifs(maps: bytes, weights: bytes, name: str, transitions: bytes | None) -> IFS:
     weights = np.frombuffer(weights, dtype=np.float32).astype(float)
-    ifs = IFS(np.frombuffer(maps).reshape(-1, 2, 3), name=name)
+    if transitions is not None:
+        transitions = np.frombuffer(transitions).reshape(len(weights), -1)
+    ifs = IFS(np.frombuffer(maps).reshape(-1, 2, 3), None, name, transitions)
     if not weights.any():
         return ifs
     # A weight of zero stands for the share that the map has by default.
-    return IFS(ifs.maps, np.where(weights == 0, ifs.weights, weights), name)
+    return IFS(ifs.maps, np.where(weights == 0, ifs.weights, weights), name, transitions)
 
 
 def morph_of(settings) -> Morph:
@@ -164,6 +186,8 @@ def fingerprint(settings, *more) -> str:
     digest = hashlib.sha1(usedforsecurity=False)
     for shape in (settings.initial, settings.final):
         digest.update(shape_maps(shape).tobytes())
+        if shape.recurrent:
+            digest.update(repr([tuple(item.transitions) for item in shape.maps]).encode())
     winding = [item.winding for item in settings.final.maps]
     digest.update(repr((settings.scheme, winding, settings.gap_resolution, more)).encode())
     if has_pairs(settings):
@@ -188,8 +212,13 @@ def write_shape(shape, ifs: IFS) -> None:
     Raises
     ------
     IFSError
-        If the shape has more maps and will not let go of them: a library override keeps those of its library.
+        If the shape has more maps and will not let go of them: a library override keeps those of its library; or if
+        the IFS is recurrent with more than `MOST_RECURRENT` maps.
     """
+    if ifs.transitions is not None and ifs.count > MOST_RECURRENT:
+        raise IFSError(
+            f"The IFS “{ifs.name}” is recurrent and has {ifs.count} maps; an object can hold {MOST_RECURRENT} of such."
+        )
     maps = shape.maps
     _resize(maps, ifs.count)
     by_area = np.allclose(IFS(ifs.maps).weights, ifs.weights)
@@ -199,6 +228,11 @@ def write_shape(shape, ifs: IFS) -> None:
         item.weight = 0.0 if by_area else float(ifs.weights[k])
         item.winding = 0
     maps.foreach_set("matrix", ifs.maps.astype(np.float32).ravel())
+    transitions = np.ones((ifs.count, MOST_RECURRENT), dtype=np.float32)
+    shape.recurrent = ifs.transitions is not None
+    if shape.recurrent:
+        transitions[:, : ifs.count] = ifs.transitions
+    maps.foreach_set("transitions", transitions.ravel())
     shape.name = ifs.name
     shape.active_index = 0
 

@@ -5,7 +5,16 @@ from mathutils import Color
 
 from ..core.formats import Entry, palette_of
 from ..core.ifs import IFSError
-from .conversion import frame_colors, morph_of, shape_colors, shape_ifs, shape_maps, write_shape
+from .conversion import (
+    MOST_RECURRENT,
+    frame_colors,
+    morph_of,
+    shape_colors,
+    shape_ifs,
+    shape_maps,
+    shape_transitions,
+    write_shape,
+)
 
 LARGEST = 1e6
 """Beyond this the properties of a map do not go."""
@@ -14,6 +23,11 @@ LARGEST = 1e6
 def require_storable(entry: Entry) -> None:
     """Raise IFSError unless an entry can become the shape of an object."""
     ifs = entry.ifs()
+    if ifs.transitions is not None and ifs.count > MOST_RECURRENT:
+        raise IFSError(
+            f"“{entry.name}” has chaos and {ifs.count} maps; "
+            f"a recurrent shape on an object has {MOST_RECURRENT} at most."
+        )
     for k in np.flatnonzero(np.abs(ifs.maps).max(axis=(1, 2)) > LARGEST):
         raise IFSError(f"“{entry.name}”, map {k + 1}: a map on an object has no numbers beyond {LARGEST:g}.")
 
@@ -39,22 +53,24 @@ def shape_entry(shape, name: str) -> Entry:
     """Return a shape as an entry; raises IFSError."""
     ifs = shape_ifs(shape)
     weights = ifs.weights if any(item.weight for item in shape.maps) else None
-    return _entry(shape.name or name, _decimal(shape_maps(shape)), weights, shape_colors(shape))
+    transitions = shape_transitions(shape)
+    transitions = None if transitions is None else _decimal(transitions)
+    return _entry(shape.name or name, _decimal(shape_maps(shape)), weights, transitions, shape_colors(shape))
 
 
 def frame_entry(settings, name: str) -> Entry:
     """Return the shape that a morph has at its (u,v) and swell as an entry; raises IFSError."""
     u, v = settings.uv
     ifs = morph_of(settings).at(u, v, settings.swell)
-    return _entry(name, ifs.maps, ifs.weights, frame_colors(settings)[:, :3])
+    return _entry(name, ifs.maps, ifs.weights, ifs.transitions, frame_colors(settings)[:, :3])
 
 
-def _entry(name, maps, weights, colors) -> Entry:
+def _entry(name, maps, weights, transitions, colors) -> Entry:
     colors = [Color(color).from_scene_linear_to_srgb() for color in colors.tolist()]
     if len(colors) > 256:
-        return Entry(name, maps, weights)
+        return Entry(name, maps, weights, transitions)
     places, palette = palette_of(np.array(colors))
-    return Entry(name, maps, weights, colors=places, palette=palette)
+    return Entry(name, maps, weights, transitions, colors=places, palette=palette)
 
 
 def _decimal(values: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ from bpy.props import (
 )
 
 from . import conversion
-from .conversion import identifier
+from .conversion import MOST_RECURRENT, identifier
 from .output_properties import IFSMorphOutputSettings
 from .pair_properties import CLASSES as PAIR_CLASSES
 from .pair_properties import IFSMorphMatchSettings
@@ -93,6 +93,20 @@ class IFSMorphMap(bpy.types.PropertyGroup):
         override=LEAF,
         update=redraw,
     )
+    transitions: FloatVectorProperty(
+        name="Transitions",
+        description="How often each map of a recurrent shape is applied next after this one, times its weight; "
+        "never where it is zero",
+        size=MOST_RECURRENT,
+        default=(1.0,) * MOST_RECURRENT,
+        min=0.0,
+        soft_max=1.0,
+        precision=2,
+        step=10,
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
     winding: IntProperty(
         name="Winding",
         description="Whole turns that this map makes on its way from the initial shape, on top of the shorter way",
@@ -134,6 +148,14 @@ class IFSMorphShape(bpy.types.PropertyGroup):
 
     name: StringProperty(name="Name", description="What to call the shape in messages", options=STILL, override=LEAF)
     maps: CollectionProperty(type=IFSMorphMap, name="Maps", override=LIST)
+    recurrent: BoolProperty(
+        name="Recurrent",
+        description="Let the transitions say which map may be applied after which, and how often",
+        default=False,
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
     active_index: IntProperty(
         name="Active Map", description="The map shown below the list", default=0, options=STILL, override=LEAF
     )

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from ..ifs import IFS
+from ..ifs import IFS, IFSError
 from .entry import Entry, FormatError, Reading
 from .flame import read_flames
 from .flame_writing import palette_of, write_flames
@@ -80,7 +80,7 @@ def read_file(path: str | Path) -> Reading:
 
 
 def read_shapes(path: str | Path) -> dict[str, IFS]:
-    """Read the plain IFSs of the plane in a file; `read_file` also gives the other entries, and what is wrong.
+    """Read the IFSs of the plane in a file; `read_file` also gives the other entries, and what is wrong.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def read_shapes(path: str | Path) -> dict[str, IFS]:
     Returns
     -------
     dict
-        IFSs by name, in the order of the file.
+        IFSs by name, in the order of the file; flames with chaos are recurrent.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def read_shapes(path: str | Path) -> dict[str, IFS]:
     """
     found = read_file(path)
     if not found.shapes:
-        reasons = found.problems or [f"“{entry.name}” is no plain IFS of the plane." for entry in found.entries]
+        reasons = [*found.problems, *(_reason(entry) for entry in found.entries)]
         more = [f"There are {len(reasons) - PROBLEMS_SHOWN} more problems."] if len(reasons) > PROBLEMS_SHOWN else []
         head = f"“{Path(path).name}” has no shape that can be used."
         raise FormatError("\n".join([head, *reasons[:PROBLEMS_SHOWN], *more]))
@@ -148,7 +148,16 @@ def write_shapes(path: str | Path, shapes: Mapping[str, IFS]) -> None:
     FormatError
         As `write_file`.
     """
-    write_file(path, [Entry(name, ifs.maps, ifs.weights) for name, ifs in shapes.items()])
+    write_file(path, [Entry(name, ifs.maps, ifs.weights, ifs.transitions) for name, ifs in shapes.items()])
+
+
+def _reason(entry: Entry) -> str:
+    """Say why an entry is no IFS of the plane."""
+    try:
+        entry.ifs()
+    except IFSError as error:
+        return str(error)
+    return ""
 
 
 def _decoded(data: bytes) -> str:

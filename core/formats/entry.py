@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -38,7 +39,7 @@ class Entry:
         How often each map is used, as the file says, not scaled; None where the file does not say.
     transitions : (N, N), optional
         After map i, map j follows with a probability proportional to ``weights[j] * transitions[i, j]``. None stands
-        for ones throughout, a plain IFS.
+        for ones throughout, a plain IFS; a flame calls them chaos.
     colors : (N,), optional
         Place of each map's color in the palette, from 0 to 1.
     color_speeds : (N,), optional
@@ -72,11 +73,6 @@ class Entry:
         return self.maps.shape[1]
 
     @property
-    def is_plain(self) -> bool:
-        """Whether the entry is an IFS of the plane whose maps follow each other freely."""
-        return self.dimension == 2 and self.transitions is None
-
-    @property
     def known_weights(self) -> np.ndarray:
         """The weights (N,), or where the file has none the areas or volumes of the maps, none too small."""
         if self.weights is not None:
@@ -88,20 +84,16 @@ class Entry:
         return np.maximum(volumes, WEIGHT_FLOOR * total) if total > 0 else np.ones(self.count)
 
     def ifs(self) -> IFS:
-        """Return the shape as an IFS.
+        """Return the shape as an IFS, a recurrent one if it has transitions.
 
         Raises
         ------
         IFSError
-            If the shape lies in space, or if its maps do not follow each other freely.
+            If the shape lies in space, or has transitions that leave no map to follow another.
         """
         if self.dimension == 3:
             raise IFSError(f"{called(self.name)} lies in space; an IFS here has maps of the plane.")
-        if self.transitions is not None:
-            raise IFSError(
-                f"{called(self.name)} has chaos, which rules which map may follow which; a plain IFS has none."
-            )
-        return IFS(self.maps, self.weights, self.name)
+        return IFS(self.maps, self.weights, self.name, self.transitions)
 
 
 @dataclass(frozen=True)
@@ -121,8 +113,12 @@ class Reading:
 
     @property
     def shapes(self) -> dict[str, IFS]:
-        """The entries that are plain IFSs of the plane, by name."""
-        return {entry.name: entry.ifs() for entry in self.entries if entry.is_plain}
+        """The entries that are IFSs of the plane, by name."""
+        found = {}
+        for entry in self.entries:
+            with suppress(IFSError):
+                found[entry.name] = entry.ifs()
+        return found
 
 
 def reading(entries: Iterable[Entry], problems: Iterable[str]) -> Reading:

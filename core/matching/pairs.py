@@ -132,7 +132,15 @@ def _end(ifs: IFS, listed: list[tuple[Word, Symmetry | None]], name: str) -> IFS
     weights = np.array([word_weight(ifs, word) for word in words]) * shares(words)
     # Split often enough, weights of zero alone may be left.
     weights = weights if weights.sum() > 0 else None
-    return IFS(compose(maps, gauges), weights, ifs.name)
+    transitions = ifs.transitions
+    if transitions is not None:
+        if max(map(len, words)) > 1 or not (gauges == np.array(IDENTITY)).all():
+            raise IFSError(
+                f"The {name} shape is recurrent: its maps can be neither split nor turned by a symmetry; "
+                "clear the pairs."
+            )
+        transitions = transitions[np.ix_(letters, letters)]
+    return IFS(compose(maps, gauges), weights, ifs.name, transitions)
 
 
 def _listed(symmetry: Symmetry | None) -> list | None:

@@ -2,12 +2,12 @@
 
 import bpy
 
-from ..conversion import fit_window
+from ..conversion import MOST_RECURRENT, fit_window
 from ..pairs import exchange_maps
 from ..property_options import window_held
 from .poll import ENDS, editable_morph, shape_of
 
-STORED = ("name", "matrix", "weight", "color", "winding")
+STORED = ("name", "matrix", "weight", "color", "winding", "transitions")
 """What a map stores; the rest of its properties follows."""
 
 
@@ -34,6 +34,13 @@ class _MapOperator:
         return {"FINISHED"}
 
 
+def reorder_transitions(shape, change) -> None:
+    """Have the transitions of all maps follow a change of the list: `change` takes the numbers of one to new ones."""
+    with window_held(shape.id_data):
+        for item in shape.maps:
+            item.transitions = change(list(item.transitions))[:MOST_RECURRENT]
+
+
 class IFSMORPH_OT_map_add(_MapOperator, bpy.types.Operator):
     """Add a map to the shape: its whole at half its size"""
 
@@ -58,6 +65,7 @@ class IFSMORPH_OT_map_remove(_MapOperator, bpy.types.Operator):
         if not 0 <= shape.active_index < len(shape.maps):
             return "There is no active map to remove."
         shape.maps.remove(shape.active_index)
+        reorder_transitions(shape, lambda row: [*row[: shape.active_index], *row[shape.active_index + 1 :], 1.0])
         shape.active_index = max(0, min(shape.active_index, len(shape.maps) - 1))
         return None
 
@@ -76,12 +84,13 @@ class IFSMORPH_OT_map_duplicate(_MapOperator, bpy.types.Operator):
         copy, source = shape.maps.add(), shape.maps[index]
         for name in STORED:
             setattr(copy, name, getattr(source, name))
-        shape.active_index = len(shape.maps) - 1
+        place = shape.active_index = len(shape.maps) - 1
         try:
-            shape.maps.move(shape.active_index, index + 1)
-            shape.active_index = index + 1
+            shape.maps.move(place, index + 1)
+            place = shape.active_index = index + 1
         except TypeError:
             pass  # In a library override the copy stays at the end.
+        reorder_transitions(shape, lambda row: [*row[:place], *row[index : index + 1], *row[place:-1]])
         return None
 
 
@@ -104,6 +113,10 @@ class IFSMORPH_OT_map_move(_MapOperator, bpy.types.Operator):
         if not (0 <= index < len(shape.maps) and 0 <= target < len(shape.maps)):
             return "The map is at the end of the list already."
         shape.maps.move(index, target)
+        places = list(range(MOST_RECURRENT))
+        if max(index, target) < MOST_RECURRENT:
+            places[index], places[target] = target, index
+        reorder_transitions(shape, lambda row: [row[place] for place in places])
         shape.active_index = target
         owner = shape.id_data
         with window_held(owner):

@@ -89,7 +89,8 @@ def signature(owner, settings, morph, frame) -> tuple:
     canvas = tuple(output.resolution), tuple(output.window), tuple(output.background)
     if frame is None:
         return canvas
-    shape = frame.maps.tobytes(), frame.weights.tobytes(), _norms(owner, morph, frame).tobytes()
+    chances = None if frame.transitions is None else frame.transitions.tobytes()
+    shape = frame.maps.tobytes(), frame.weights.tobytes(), chances, _norms(owner, morph, frame).tobytes()
     look = output.mode, output.antialiasing, _colors(owner, settings).tobytes()
     tones = (output.curve, output.exposure, output.gamma) if output.mode == "DENSITY" else ()
     return canvas + shape + look + tones

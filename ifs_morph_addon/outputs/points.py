@@ -119,7 +119,9 @@ def signature(owner, settings, morph, frame) -> tuple:
     if frame is None:
         return ()
     output = settings.output
-    still = output.point_count, morph.weights_at(0.5).tobytes(), _colors(settings).tobytes()
+    chances = address_transitions(settings, morph)
+    chances = None if chances is None else chances.tobytes()
+    still = output.point_count, morph.weights_at(0.5).tobytes(), chances, _colors(settings).tobytes()
     return frame.maps.tobytes(), tuple(output.window), output.point_radius, still
 
 
@@ -134,7 +136,9 @@ def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
     if not np.isfinite(output.window).all():
         raise IFSError("The window holds NaN; fit it again, or give it four numbers.")
     weights, window = morph.weights_at(0.5), output.window
-    points = point_cloud(frame, output.point_count, weights, placing=(*middle(window), unit(window)))
+    chances = address_transitions(settings, morph)
+    places = *middle(window), unit(window)
+    points = point_cloud(frame, output.point_count, weights, placing=places, address_transitions=chances)
     count = len(points.position)
     if len(mesh.vertices) != count or len(mesh.edges):
         mesh.clear_geometry()
@@ -149,6 +153,18 @@ def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
     mesh.update()
     mesh.update_tag()
     return mesh
+
+
+def address_transitions(settings, morph) -> np.ndarray | None:
+    """Transitions (N, N) by which points keep their addresses all along the way; None if maps follow each other freely.
+
+    At an end that allows less than the way does, the points are those of that end.
+    """
+    if not morph.is_recurrent:
+        return None
+    u = settings.uv[0]
+    here, middle_of_way = morph.transitions_at(u), morph.transitions_at(0.5)
+    return middle_of_way if np.array_equal(here > 0, middle_of_way > 0) else here
 
 
 def _has(mesh, *names) -> bool:

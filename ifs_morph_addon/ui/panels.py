@@ -3,11 +3,14 @@
 import bpy
 
 from .. import fcurves, live, locus_picture, outputs, preparation
-from ..conversion import has_pairs, pairs_problem, path_fingerprint, shape_problem
+from ..conversion import MOST_RECURRENT, has_pairs, pairs_problem, path_fingerprint, shape_problem
 from .files import draw_file_buttons
 from .pairs import IFSMORPH_PT_pairs
 from .presets import IFSMORPH_PT_output_presets
 from .text import sentence
+
+MOST_IN_GRID = 8
+"""Maps whose transitions are drawn as a grid."""
 
 
 class _Panel:
@@ -152,6 +155,53 @@ class IFSMORPH_PT_final(_ShapePanel, bpy.types.Panel):
     """The final shape."""
 
     bl_label = "Final Shape"
+    shape = "final"
+
+
+class _TransitionsPanel(_Panel):
+    bl_label = "Transitions"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        """Draw the switch."""
+        self.layout.prop(getattr(context.object.ifs_morph, self.shape), "recurrent", text="")
+
+    def draw(self, context):
+        """Draw a row for each map, or that of the active map where there is no room for all."""
+        layout = self.layout
+        shape = getattr(context.object.ifs_morph, self.shape)
+        layout.active = shape.recurrent
+        count = len(shape.maps)
+        if count > MOST_RECURRENT:
+            sentence(layout, context, f"A recurrent shape has {MOST_RECURRENT} maps at most.", icon="INFO")
+        elif count <= MOST_IN_GRID:
+            sentence(layout, context, "Row: the map applied. Column: how often each is applied next.")
+            grid = layout.column(align=True)
+            for item in shape.maps:
+                row = grid.row(align=True)
+                for k in range(count):
+                    row.prop(item, "transitions", index=k, text="")
+        elif 0 <= shape.active_index < count:
+            item = shape.maps[shape.active_index]
+            sentence(layout, context, f"How often each map is applied next after {item.name}.")
+            column = layout.column(align=True)
+            column.use_property_split = True
+            column.use_property_decorate = False
+            for k, following in enumerate(shape.maps):
+                column.prop(item, "transitions", index=k, text=following.name)
+
+
+class IFSMORPH_PT_initial_transitions(_TransitionsPanel, bpy.types.Panel):
+    """Which map of the initial shape may be applied after which."""
+
+    bl_parent_id = "IFSMORPH_PT_initial"
+    shape = "initial"
+
+
+class IFSMORPH_PT_final_transitions(_TransitionsPanel, bpy.types.Panel):
+    """Which map of the final shape may be applied after which."""
+
+    bl_parent_id = "IFSMORPH_PT_final"
     shape = "final"
 
 
@@ -349,6 +399,8 @@ CLASSES = (
     IFSMORPH_PT_report,
     IFSMORPH_PT_initial,
     IFSMORPH_PT_final,
+    IFSMORPH_PT_initial_transitions,
+    IFSMORPH_PT_final_transitions,
     IFSMORPH_PT_edit_maps,
     IFSMORPH_PT_pairs,
     IFSMORPH_PT_winding,

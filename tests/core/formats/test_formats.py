@@ -162,8 +162,8 @@ def test_shapes_of_a_file_without_any_say_why(tmp_path):
     path.write_text(FRACTORIUM.replace('linear="1"', 'swirl="1"'))
     with pytest.raises(FormatError, match="map 1: swirl is not"):
         read_shapes(path)
-    path.write_text(FRACTORIUM)
-    with pytest.raises(FormatError, match="hidden"):
+    path.write_text(FRACTORIUM.replace('chaos="1 0.25"', 'chaos="0 0"'))
+    with pytest.raises(FormatError, match="no map may be applied after map 2"):
         read_shapes(path)
 
 
@@ -285,3 +285,19 @@ def test_groups_of_symmetries(kind, size):
 def test_groups_that_are_too_large():
     turn = np.array([[0.6, -0.8], [0.8, 0.6]])
     assert unfold(turn[None], np.array([0.5])) is None
+
+
+def test_recurrent_shapes_are_written_and_read_back_equal(tmp_path):
+    path = tmp_path / "chaos.flame"
+    square = IFS(SHAPES["square"].maps, [0.1, 0.2, 0.3, 0.4], transitions=1.5 * (1 - np.eye(4)))
+    write_shapes(path, {"square": square})
+    (read,) = read_shapes(path).values()
+    for name in ("maps", "weights", "transitions"):
+        assert getattr(read, name).tobytes() == getattr(square, name).tobytes()
+
+
+def test_chaos_that_leaves_no_map_to_follow_is_a_sentence(tmp_path):
+    path = tmp_path / "chaos.flame"
+    write_file(path, [Entry("stuck", SHAPES["gasket"].maps, np.ones(3), np.diag([1.0, 1.0, 0.0]))])
+    with pytest.raises(FormatError, match="no map may be applied after map 3"):
+        read_shapes(path)

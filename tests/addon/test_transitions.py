@@ -1,0 +1,133 @@
+"""Recurrent shapes on objects: stored, edited with the list of maps, drawn, read from files and written to them."""
+
+import bpy
+import numpy as np
+import pytest
+
+from core.cloud import point_cloud
+from core.formats import read_shapes
+from core.raster import render
+from core.shapes import SHAPES
+from tests.addon.support import add, attribute, content, show
+
+TRANSITIONS = np.float32([[0, 1, 0.5], [1, 0, 0.25], [1, 1, 1]])
+
+FLAME = """<flame name="chaos"><xform weight="1" linear="1" chaos="0 1 1" coefs="0.5 0 0 0.5 0 0"/>
+<xform weight="1" linear="1" chaos="1 0 1" coefs="0.5 0 0 0.5 0.5 0"/>
+<xform weight="1" linear="1" coefs="0.5 0 0 0.5 0 0.5"/></flame>"""
+
+
+def matrix(shape):
+    count = len(shape.maps)
+    return np.float32([list(item.transitions)[:count] for item in shape.maps])
+
+
+def set_matrix(shape, values):
+    shape.recurrent = True
+    for item, row in zip(shape.maps, values, strict=True):
+        item.transitions[: len(row)] = row
+
+
+@pytest.fixture
+def conversion(extension):
+    return extension.ifs_morph_addon.conversion
+
+
+@pytest.fixture
+def owner(scene):
+    owner = add("IMAGE")
+    for end in ("INITIAL", "FINAL"):
+        bpy.ops.ifs_morph.load_shape(end=end, shape="gasket")
+    return owner
+
+
+def test_transitions_say_what_may_follow_once_they_are_switched_on(owner, conversion):
+    initial = owner.ifs_morph.initial
+    free = content(owner)
+    set_matrix(initial, TRANSITIONS)
+    assert np.array_equal(conversion.shape_ifs(initial).transitions, TRANSITIONS)
+    show()
+    assert content(owner) != free
+    initial.recurrent = False
+    assert conversion.shape_ifs(initial).transitions is None
+    show()
+    assert content(owner) == free
+
+
+def test_the_list_of_maps_takes_rows_and_columns_along(owner):
+    shape = owner.ifs_morph.initial
+    set_matrix(shape, TRANSITIONS)
+    shape.active_index = 0
+    bpy.ops.ifs_morph.map_move(end="INITIAL", direction="DOWN")
+    order = [1, 0, 2]
+    assert np.array_equal(matrix(shape), TRANSITIONS[np.ix_(order, order)])
+    bpy.ops.ifs_morph.map_duplicate(end="INITIAL")
+    order = [1, 0, 0, 2]
+    assert np.array_equal(matrix(shape), TRANSITIONS[np.ix_(order, order)])
+    shape.active_index = 1
+    bpy.ops.ifs_morph.map_remove(end="INITIAL")
+    order = [1, 0, 2]
+    assert np.array_equal(matrix(shape), TRANSITIONS[np.ix_(order, order)])
+    bpy.ops.ifs_morph.map_add(end="INITIAL")
+    assert np.array_equal(matrix(shape)[:3, :3], TRANSITIONS[np.ix_(order, order)])
+    assert (matrix(shape)[3] == 1).all()
+    assert (matrix(shape)[:, 3] == 1).all()
+
+
+def test_points_are_those_of_the_recurrent_shape(scene, conversion):
+    owner = add("POINTS", points=2000)
+    for end in ("INITIAL", "FINAL"):
+        bpy.ops.ifs_morph.load_shape(end=end, shape="gasket")
+        set_matrix(getattr(owner.ifs_morph, end.lower()), TRANSITIONS)
+    show()
+    letters = np.bincount(attribute(owner, "attractorlet")[:, 0], minlength=3)
+    assert np.array_equal(
+        letters, np.bincount(point_cloud(conversion.shape_ifs(owner.ifs_morph.initial), 2000).attractorlet)
+    )
+    assert abs(letters[2] - letters[0]) > 20
+    before = attribute(owner, "attractorlet")
+    owner.ifs_morph.uv = 0.5, 0.5
+    show()
+    assert np.array_equal(attribute(owner, "attractorlet"), before)
+
+
+def test_results_are_out_of_date_when_transitions_change(owner, conversion):
+    settings = owner.ifs_morph
+    stamps = {conversion.fingerprint(settings)}
+    set_matrix(settings.initial, TRANSITIONS)
+    stamps.add(conversion.fingerprint(settings))
+    settings.initial.maps[0].transitions[0] = 1
+    stamps.add(conversion.fingerprint(settings))
+    assert len(stamps) == 3
+
+
+def test_a_map_that_nothing_follows_is_said(owner, conversion):
+    set_matrix(owner.ifs_morph.initial, [[0, 0, 0], [1, 1, 1], [1, 1, 1]])
+    with pytest.raises(ValueError, match="no map may be applied after map 1"):
+        conversion.morph_of(owner.ifs_morph)
+
+
+def test_a_flame_with_chaos_comes_and_goes(owner, conversion, tmp_path):
+    path = tmp_path / "some.flame"
+    path.write_text(FLAME)
+    bpy.ops.ifs_morph.import_shapes(filepath=str(path), target="INITIAL")
+    shape = owner.ifs_morph.initial
+    assert shape.recurrent
+    assert np.array_equal(matrix(shape), [[0, 1, 1], [1, 0, 1], [1, 1, 1]])
+    written = tmp_path / "written.flame"
+    bpy.ops.ifs_morph.export_shapes(filepath=str(written), shapes={"INITIAL"})
+    (read,) = read_shapes(written).values()
+    assert np.array_equal(read.transitions, matrix(shape))
+    ours, theirs = (
+        render(ifs, (64, 64)) for ifs in (conversion.shape_ifs(shape), next(iter(read_shapes(path).values())))
+    )
+    assert np.array_equal(ours, theirs)
+
+
+def test_a_plain_shape_takes_the_place_of_a_recurrent_one(owner):
+    shape = owner.ifs_morph.initial
+    set_matrix(shape, TRANSITIONS)
+    bpy.ops.ifs_morph.load_shape(end="INITIAL", shape="square")
+    assert not shape.recurrent
+    assert (np.float32([item.transitions for item in shape.maps]) == 1).all()
+    assert len(shape.maps) == SHAPES["square"].count <= 32
