@@ -119,7 +119,8 @@ class Morph:
         linear = np.broadcast_to(self.linear(u, swell), (self.count, 2, 2))
         translation = np.broadcast_to(self.translation(v), (self.count, 2))
         maps = np.concatenate([linear, translation[..., None]], axis=-1)
-        transitions = self.transitions_at(np.mean(u)) if self.is_recurrent else None
+        plain = self.initial.transitions is self.final.transitions is None
+        transitions = None if plain else self.transitions_at(np.mean(u))
         return IFS(maps, self.weights_at(u), transitions=transitions)
 
     def linear(self, u: np.ndarray | float, swell: np.ndarray | float = 0.0) -> np.ndarray:

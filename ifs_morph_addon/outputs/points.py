@@ -160,7 +160,7 @@ def address_transitions(settings, morph) -> np.ndarray | None:
 
     At an end that allows less than the way does, the points are those of that end.
     """
-    if not morph.is_recurrent:
+    if morph.initial.transitions is morph.final.transitions is None:
         return None
     u = settings.uv[0]
     here, middle_of_way = morph.transitions_at(u), morph.transitions_at(0.5)

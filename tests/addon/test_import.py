@@ -181,7 +181,7 @@ def test_names_to_choose_from(flame, extension):
     entries = extension.core.formats.read_file(flame).entries
     usable, problems = extension.ifs_morph_addon.operators.files._usable(entries, ["before"])
     assert list(usable) == ["flat", "tiles"]
-    assert len(problems) == 3
+    assert len(problems) == 2
 
 
 # ---- the clipboard ---------------------------------------------------------------------------------------------------

@@ -98,6 +98,12 @@ def test_attractorlets_that_meet_do_not_do_if_they_are_in_pieces_themselves():
     assert connectedness(points).state == DISCONNECTED
 
 
+def test_a_morph_keeps_transitions_that_forbid_nothing():
+    often = recurrent(SQUARE, np.ones((4, 4)) + 2 * np.eye(4))
+    assert np.array_equal(Morph(SQUARE, often).at(0.5, 0.5).transitions, np.ones((4, 4)) + np.eye(4))
+    assert Morph(SQUARE, SQUARE).at(0.5, 0.5).transitions is None
+
+
 def test_a_morph_between_two_graphs_has_both():
     one = recurrent(SQUARE, np.ones((4, 4)) - np.diag([1, 0, 0, 0]))
     other = recurrent(SQUARE, np.ones((4, 4)) - np.diag([0, 0, 0, 1]))
