@@ -20,6 +20,9 @@ NEAR = 1e-4
 STORED = ("initial", "final", "initial_symmetry", "final_symmetry", "winding", "locked")
 """What a pair stores; its symmetry in words follows."""
 
+SIGNS = {"turned by ": "\N{ANTICLOCKWISE OPEN CIRCLE ARROW}", "mirrored at ": "\N{LEFT RIGHT ARROW}"}
+"""Of symmetries, where there is room for a sign only."""
+
 OUTDATED = "The pairs no longer fit the maps, so map k becomes map k for now: Match Pairs again, or Clear Pairs."
 
 
@@ -52,6 +55,18 @@ def described(item) -> str:
     """The symmetries of a stored pair in words; nothing if it makes use of none."""
     found = [(end, symmetry_text(_rows(getattr(item, f"{end}_symmetry")))) for end in ("initial", "final")]
     return ", ".join(f"{end} {text}" for end, text in found if text)
+
+
+def line(item) -> str:
+    """A stored pair in as few signs as a list has room for: ``3 1 → 2 ↺120° +1``."""
+    ends = []
+    for end in ("initial", "final"):
+        text = symmetry_text(_rows(getattr(item, f"{end}_symmetry")))
+        for words, sign in SIGNS.items():
+            text = text.replace(words, sign)
+        ends.append(f"{getattr(item, end)} {text}".strip())
+    turns = f" {item.winding:+d}" if item.winding else ""
+    return f"{ends[0]} \N{RIGHTWARDS ARROW} {ends[1]}{turns}"
 
 
 def fitted(initial: IFS, final: IFS, matching) -> tuple[Pair, ...] | None:

@@ -3,7 +3,7 @@
 import bpy
 
 from ..conversion import has_pairs, pairs_problem
-from ..pairs import described
+from ..pairs import described, line
 from .text import sentence
 
 
@@ -13,14 +13,7 @@ class IFSMORPH_UL_pairs(bpy.types.UIList):
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index=0, flt_flag=0):
         """Draw one pair."""
         row = layout.row(align=True)
-        words = row.row(align=True)
-        words.ui_units_x = 4.5
-        words.label(text=f"{item.initial}  \N{RIGHTWARDS ARROW}  {item.final}")
-        row.label(text=described(item))
-        if item.winding:
-            turns = row.row(align=True)
-            turns.ui_units_x = 1.6
-            turns.label(text=f"{item.winding:+d}")
+        row.label(text=line(item))
         row.prop(item, "locked", text="", icon="LOCKED" if item.locked else "UNLOCKED", emboss=False)
 
 
@@ -61,10 +54,10 @@ class IFSMORPH_PT_pairs(bpy.types.Panel):
         for action, icon in (("LOCK", "LOCKED"), ("UNLOCK", "UNLOCKED")):
             column.operator("ifs_morph.pairs_lock", text="", icon=icon).action = action
         if 0 <= matching.active_index < len(matching.pairs):
-            self.draw_pair(layout, matching.pairs[matching.active_index])
+            self.draw_pair(layout, context, matching.pairs[matching.active_index])
 
-    def draw_pair(self, layout, item):
-        """Draw the active pair: both words, with their buttons, and the turns."""
+    def draw_pair(self, layout, context, item):
+        """Draw the active pair: both words, with their buttons, the turns, and the symmetries in words."""
         column = layout.column(align=True)
         column.use_property_split = True
         column.use_property_decorate = False
@@ -74,6 +67,9 @@ class IFSMORPH_PT_pairs(bpy.types.Panel):
             row.operator("ifs_morph.pair_symmetry", text="", icon="FILE_REFRESH").end = end
             row.operator("ifs_morph.pair_split", text="", icon="MOD_EXPLODE").end = end
         column.prop(item, "winding")
+        symmetries = described(item)
+        if symmetries:
+            sentence(layout, context, f"{symmetries[0].upper()}{symmetries[1:]}.")
 
 
 register, unregister = bpy.utils.register_classes_factory((IFSMORPH_UL_pairs,))

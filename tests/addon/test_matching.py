@@ -375,6 +375,10 @@ def test_symmetries_go_round(image, extension):
     assert sum("mirrored" in text for text in found) == 4
     assert len(set(found)) == 8
     assert found[-1] == ""
+    bpy.ops.ifs_morph.pair_symmetry(end="FINAL")
+    item.winding = -1
+    assert extension.ifs_morph_addon.pairs.line(item) == "1 → 1 ↺90° -1"
+    assert "Final turned by 90°." in sidebar(image, extension)
     bpy.ops.ifs_morph.load_shape(end="INITIAL", shape="Barnsley fern")
     with pytest.raises(RuntimeError, match="no symmetries"):
         bpy.ops.ifs_morph.pair_symmetry(end="INITIAL")
