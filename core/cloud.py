@@ -12,6 +12,7 @@ IFS the parts depend on the letter before, so there is a small cloud for each nu
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -19,22 +20,18 @@ import numpy as np
 
 from . import parallel
 from .enclosure import norm
-from .grammar import word_grammar
+from .grammar import cumulated, word_grammar
 from .ifs import IFS
 from .kernels import njit
-from .words import IDENTITY, LETTER, STATE, grown, state_points, unit_maps
-
-FEW = 256
-"""Points that a word and a small cloud have at most."""
+from .space import cloud as space_cloud
+from .space.ifs import SpaceIFS
+from .words import FEW, IDENTITY, INVISIBLE, LETTER, STATE, grown, state_points, unit_maps
 
 CHUNK = 200_000
 """Points for a thread at least, so that it is worth its while."""
 
 RADIUS_RANGE = (1 / 16, 2.0)
 """Bounds of the radius of a point, relative to the one that would have all points just fill the enclosing disc."""
-
-INVISIBLE = 1e-9
-"""A word of this size relative to the attractor is a point, however many addresses start with it."""
 
 FIRST, COUNT = 6, 7
 """Columns of a table of words between those of the map and LETTER: the index of the first point, and their number."""
@@ -63,7 +60,7 @@ def point_cloud(
     count: int,
     address_weights: np.ndarray | None = None,
     threads: int | None = None,
-    placing: tuple[float, float, float] | None = None,
+    placing: tuple[float, ...] | None = None,
     address_transitions: np.ndarray | None = None,
 ) -> Points:
     """Points of an attractor, spread as the weights and transitions say.
@@ -71,15 +68,17 @@ def point_cloud(
     Parameters
     ----------
     ifs : IFS
+        Of the plane, or of space.
     count : int
     address_weights : (N,), optional
         Weights that give the addresses, those of `ifs` by default. Keep them the same all through an animation, and the
         points keep their addresses.
     threads : int, optional
         By default one for each processor. The result is the same to the byte.
-    placing : (x, y, unit), optional
-        Put the points into a space of three dimensions, with its origin at a place of the plane and the length 1 for so
-        many units of the plane. Positions and radii are in that space, and the third coordinate is zero.
+    placing : (x, y, unit) or (x, y, z, unit), optional
+        Put the points into a space of three dimensions, with its origin at a place of the plane or of space and the
+        length 1 for so many units of it. Positions and radii are in that space; without z the third coordinate of a
+        shape of the plane is zero.
 
     address_transitions : (N, N), optional
         Transitions that give the addresses, those of `ifs` by default. Points of addresses that `ifs` does not allow
@@ -98,10 +97,12 @@ def point_cloud(
     weights = ifs.weights if address_weights is None else np.asarray(address_weights, dtype=float)
     if weights.shape != (ifs.count,) or not (np.isfinite(weights).all() and (weights >= 0).all() and weights.sum() > 0):
         raise ValueError(f"Address weights must be {ifs.count} numbers, none negative and one positive.")
+    if isinstance(ifs, SpaceIFS):
+        return _in_space(ifs, count, weights, threads, placing)
     maps, center, radius = unit_maps(ifs, least_radius=1e-30)
     dimensions = 2
     if placing is not None:
-        x, y, unit = placing
+        x, y, *_, unit = placing
         center, radius, dimensions = (center - (x, y)) / unit, radius / unit, 3
     points = Points(np.empty((count, dimensions), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
     grammar = word_grammar(weights, ifs.transitions if address_transitions is None else address_transitions)
@@ -117,8 +118,41 @@ def point_cloud(
     def chunk(rows: tuple[int, int]) -> None:
         place(words[slice(*rows)], start, *small, center, radius, bounds, dimensions, *found)
 
+    _run(chunk, len(words), count, threads)
+    return points
+
+
+def _run(chunk: Callable, words: int, count: int, threads: int | None) -> None:
+    """Call `chunk` with the first and the last of some of the words, until all are done."""
     chunks = min(parallel.thread_count(threads), 1 + count // CHUNK)
-    parallel.run(chunk, list(pairwise(np.linspace(0, len(words), chunks + 1).astype(int))), threads)
+    parallel.run(chunk, list(pairwise(np.linspace(0, words, chunks + 1).astype(int))), threads)
+
+
+def _in_space(
+    ifs: SpaceIFS, count: int, weights: np.ndarray, threads: int | None, placing: tuple[float, ...] | None
+) -> Points:
+    """`point_cloud` of a shape in space."""
+    center, radius = ifs.enclosing_ball
+    radius = max(radius, 1e-30)
+    shift = (ifs.translation + ifs.linear @ center - center) / radius
+    maps = np.concatenate([ifs.linear.reshape(-1, 9), shift], axis=1)
+    if placing is not None:
+        *origin, unit = placing
+        center, radius = (center - origin) / unit, radius / unit
+    points = Points(np.empty((count, 3), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
+    borders = cumulated(weights)
+    words = space_cloud.share_out(maps, borders, count)
+    heaviest = int(np.argmax(weights))
+    seed = np.linalg.solve(np.eye(3) - ifs.linear[heaviest], shift[heaviest])
+    start, small = space_cloud.small_clouds(maps, np.ascontiguousarray(ifs.norms), borders, seed, words)
+    small = [np.ascontiguousarray(column) for column in small.T]
+    bounds = np.float32(RADIUS_RANGE) * np.float32(radius / max(count, 1) ** (1 / 3))
+    found = points.position.reshape(-1), points.attractorlet, points.radius
+
+    def chunk(rows: tuple[int, int]) -> None:
+        space_cloud.place(words[slice(*rows)], start, *small, center, radius, bounds, *found)
+
+    _run(chunk, len(words), count, threads)
     return points
 
 

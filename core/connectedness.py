@@ -14,7 +14,7 @@ import numpy as np
 
 from . import states
 from .affine import compose
-from .decision import decide_frames
+from .deciding import decide_frames
 from .ifs import IFS, Contractivity
 from .kernels import njit
 
@@ -66,7 +66,7 @@ def connectedness(ifs: IFS, tolerance: float = 1 / 300) -> Verdict:
         CONNECTED: at the tolerance. DISCONNECTED: certain, whatever the tolerance. UNDECIDED: the budget of the
         search ran out, which happens to heavily overlapping, flat maps. NO_ATTRACTOR: certain.
     """
-    linear = np.ascontiguousarray(ifs.linear).reshape(-1, 4)
+    linear = np.ascontiguousarray(ifs.linear).reshape(ifs.count, -1)
     translation = ifs.translation[None].copy()
     state, gap, labels = decide_frames(linear[None], translation, ifs.follows[None], float(tolerance), True)
     return Verdict(Connectedness(state[0]), (float(gap[0, 0]), float(gap[0, 1])), labels[0])

@@ -298,8 +298,3 @@ def decide_each(linear, translation, follows, tolerance, with_gap):
             labels[here],
         )
     return state, gap, labels
-
-
-def are_connected(linear: np.ndarray, translation: np.ndarray, follows: np.ndarray, tolerance: float) -> np.ndarray:
-    """Which of some attractors (F,) are connected at the tolerance; arguments as in `decide_frames`."""
-    return decide_frames(linear, translation, follows, tolerance, False)[0] == CONNECTED

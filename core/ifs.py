@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -59,16 +60,19 @@ class IFS:
     name: str = field(default="")
     transitions: np.ndarray | None = None
 
+    DIMENSION: ClassVar[int] = 2
+    """Of the space that the maps act on: 2, and 3 for a `space.ifs.SpaceIFS`."""
+    _LAYOUT: ClassVar[str] = "(N, 2, 3) is needed, [[a, b, e], [c, d, f]] each"
+    _ENTRIES: ClassVar[str] = "a, b, c, d, e and f"
+
     def __post_init__(self) -> None:
         maps = _numbers(self.maps, f"{self._called} maps")
-        if maps.ndim != 3 or maps.shape[1:] != (2, 3):
-            raise IFSError(
-                f"{self._called} maps have the shape {maps.shape}; (N, 2, 3) is needed, [[a, b, e], [c, d, f]] each."
-            )
+        if maps.ndim != 3 or maps.shape[1:] != (self.DIMENSION, self.DIMENSION + 1):
+            raise IFSError(f"{self._called} maps have the shape {maps.shape}; {self._LAYOUT}.")
         if len(maps) == 0:
             raise IFSError(f"{self._called} has no maps; add at least one.")
-        _require_finite(maps, f"{self._called} map", "a, b, c, d, e and f")
-        areas = np.abs(determinant(maps[:, :, :2]))
+        _require_finite(maps, f"{self._called} map", self._ENTRIES)
+        areas = np.abs(self._determinants(maps[:, :, :-1]))
         if self.weights is None:
             total = areas.sum()
             weights = np.maximum(areas, WEIGHT_FLOOR * total) if total > 0 else np.ones(len(maps))
@@ -93,6 +97,10 @@ class IFS:
         object.__setattr__(self, "maps", maps)
         object.__setattr__(self, "weights", weights)
 
+    @staticmethod
+    def _determinants(linear: np.ndarray) -> np.ndarray:
+        return determinant(linear)
+
     @property
     def _called(self) -> str:
         return f"The IFS “{self.name}”:" if self.name else "The IFS:"
@@ -105,12 +113,12 @@ class IFS:
     @property
     def linear(self) -> np.ndarray:
         """Linear parts (N, 2, 2)."""
-        return self.maps[:, :, :2]
+        return self.maps[:, :, :-1]
 
     @property
     def translation(self) -> np.ndarray:
         """Translations (N, 2)."""
-        return self.maps[:, :, 2]
+        return self.maps[:, :, -1]
 
     @property
     def is_recurrent(self) -> bool:
@@ -129,6 +137,10 @@ class IFS:
         """Lipschitz constants (N,) of the maps."""
         return singular_values(self.linear)[:, 0]
 
+    @property
+    def _spectral_radii(self) -> np.ndarray:
+        return spectral_radius(self.linear)
+
     @cached_property
     def _words(self) -> tuple:
         return shrinking_words(np.ascontiguousarray(self.linear).reshape(-1, 4), self.follows)
@@ -142,7 +154,7 @@ class IFS:
         """Raise IFSError, naming the map and its norm, unless the IFS is known to have an attractor."""
         if self.contractivity == Contractivity.CONTRACTIVE:
             return
-        radii = spectral_radius(self.linear)
+        radii = self._spectral_radii
         worst = int(np.argmax(radii))
         if radii[worst] >= 1 - 1e-9:
             raise IFSError(
@@ -184,7 +196,7 @@ class IFS:
             If there is no attractor.
         """
         self.require_attractor()
-        return np.linalg.solve(np.eye(2) - self.linear, self.translation[..., None])[..., 0]
+        return np.linalg.solve(np.eye(self.DIMENSION) - self.linear, self.translation[..., None])[..., 0]
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from . import parallel
 from .connectedness import Connectedness
-from .decision import column_steps
+from .deciding import column_steps
 from .morph import Morph
 
 COLORS = {
@@ -151,7 +151,7 @@ def compute_locus_steps(
     if not tolerance > 0:
         raise ValueError(f"The tolerance is {tolerance:g}; it must be above 0.")
     u, v = nodes(resolution, domain)
-    linear = morph.linear(u[:, None]).reshape(len(u), -1, 4)
+    linear = morph.linear(u[:, None]).reshape(len(u), morph.count, -1)
     start = morph.translation(0.0)
     drift = morph.translation(1.0) - start
     follows = morph.follows_at(u)

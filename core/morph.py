@@ -54,20 +54,11 @@ class Morph:
         Radians by which each map turns on the way, counter-clockwise positive; not for the scheme ``elementwise``.
     """
 
-    def __init__(self, initial: IFS, final: IFS, scheme: str = "polar", winding: np.ndarray | None = None) -> None:
-        if initial.count != final.count:
-            raise IFSError(
-                f"The initial shape has {initial.count} maps and the final one {final.count}; "
-                "both must have as many: add maps to one or remove them from the other."
-            )
-        if scheme not in SCHEMES:
-            raise IFSError(f"There is no scheme “{scheme}”; choose one of {', '.join(SCHEMES)}.")
-        winding = np.zeros(initial.count) if winding is None else np.asarray(winding, dtype=float)
-        whole = np.isfinite(winding).all() and np.array_equal(winding, np.round(winding))
-        if winding.shape != (initial.count,) or not whole:
-            raise IFSError(f"Winding must be {initial.count} whole numbers of turns, one a map.")
-        self.initial, self.final, self.scheme, self.winding = initial, final, scheme, winding.astype(int)
+    DIMENSION = 2
+    """Of the shapes, see `IFS.DIMENSION`."""
 
+    def __init__(self, initial: IFS, final: IFS, scheme: str = "polar", winding: np.ndarray | None = None) -> None:
+        winding = self._accept(initial, final, scheme, winding)
         reflects = _orientations(initial.linear, final.linear)
         self.flips = tuple(int(i) for i in np.flatnonzero(reflects[0] != reflects[1]))
         self._reflects = reflects
@@ -89,6 +80,28 @@ class Morph:
                         "use the polar scheme or give the map some height."
                     )
                 stretch[:] = _of_eigenvalues(stretch, np.log)
+
+    def _accept(self, initial: IFS, final: IFS, scheme: str, winding: np.ndarray | None) -> np.ndarray:
+        """Check and keep what the morph is made of; the winding (N,)."""
+        for ifs in (initial, final):
+            if ifs.DIMENSION != self.DIMENSION:
+                raise IFSError(
+                    f"This morph is between shapes of {self.DIMENSION} dimensions, and one has {ifs.DIMENSION}; "
+                    "choose two shapes of the plane, or two in space."
+                )
+        if initial.count != final.count:
+            raise IFSError(
+                f"The initial shape has {initial.count} maps and the final one {final.count}; "
+                "both must have as many: add maps to one or remove them from the other."
+            )
+        if scheme not in SCHEMES:
+            raise IFSError(f"There is no scheme “{scheme}”; choose one of {', '.join(SCHEMES)}.")
+        winding = np.zeros(initial.count) if winding is None else np.asarray(winding, dtype=float)
+        whole = np.isfinite(winding).all() and np.array_equal(winding, np.round(winding))
+        if winding.shape != (initial.count,) or not whole:
+            raise IFSError(f"Winding must be {initial.count} whole numbers of turns, one a map.")
+        self.initial, self.final, self.scheme, self.winding = initial, final, scheme, winding.astype(int)
+        return self.winding
 
     @property
     def count(self) -> int:
@@ -116,12 +129,12 @@ class Morph:
         IFS
             It need not have an attractor.
         """
-        linear = np.broadcast_to(self.linear(u, swell), (self.count, 2, 2))
-        translation = np.broadcast_to(self.translation(v), (self.count, 2))
+        linear = np.broadcast_to(self.linear(u, swell), self.initial.linear.shape)
+        translation = np.broadcast_to(self.translation(v), self.initial.translation.shape)
         maps = np.concatenate([linear, translation[..., None]], axis=-1)
         plain = self.initial.transitions is self.final.transitions is None
         transitions = None if plain else self.transitions_at(np.mean(u))
-        return IFS(maps, self.weights_at(u), transitions=transitions)
+        return type(self.initial)(maps, self.weights_at(u), transitions=transitions)
 
     def linear(self, u: np.ndarray | float, swell: np.ndarray | float = 0.0) -> np.ndarray:
         """Linear parts (..., N, 2, 2) for `u` and `swell` that broadcast to (..., N)."""

@@ -16,7 +16,7 @@ import numpy as np
 from . import parallel
 from .connectedness import Connectedness
 from .curve import Keys, smooth_keys
-from .decision import are_connected
+from .deciding import are_connected
 from .locus import Locus, compute_locus_steps, nodes
 from .morph import Morph
 from .report import PathReport, check_frames_steps, family

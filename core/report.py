@@ -9,7 +9,7 @@ import numpy as np
 
 from . import parallel
 from .connectedness import Connectedness
-from .decision import decide_frames
+from .deciding import decide_frames
 from .morph import Morph
 
 CHUNK = 16
@@ -161,10 +161,10 @@ def check_frames_steps(
 def family(morph: Morph, uv_swell: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Linear parts (F, N, 4), translations (F, N, 2), and which letters follow which (F, N, N), as kernels take them.
 
-    At u, v and swell (F, 3).
+    At u, v and swell (F, 3). In space linear parts are (F, N, 9) and translations (F, N, 3).
     """
     u, v, swell = uv_swell.T[..., None]
-    linear = np.ascontiguousarray(morph.linear(u, swell)).reshape(len(uv_swell), morph.count, 4)
+    linear = np.ascontiguousarray(morph.linear(u, swell)).reshape(len(uv_swell), morph.count, -1)
     return linear, np.ascontiguousarray(morph.translation(v)), morph.follows_at(uv_swell[:, 0])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from . import parallel
 from .connectedness import Connectedness
 from .curve import smooth_keys
-from .decision import are_connected, column_steps
+from .deciding import are_connected, column_steps
 from .morph import Morph
 from .report import family
 
@@ -52,7 +52,7 @@ def least_swell_field_steps(
     """Least swell (V, U) over a grid, to the next of `levels`; infinite where there is no attractor; in steps."""
     swells = np.arange(levels + 1) / levels
     linear = np.ascontiguousarray(morph.linear(u[:, None, None], swells[:, None]))
-    linear = linear.reshape(len(u), levels + 1, morph.count, 4)
+    linear = linear.reshape(len(u), levels + 1, morph.count, -1)
     start = morph.translation(0.0)
     drift = morph.translation(1.0) - start
     follows = morph.follows_at(u)

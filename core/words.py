@@ -25,6 +25,12 @@ SIZE, MASS, LETTER, STATE = 6, 7, 8, 9
 WORD_MASS = 2.0**40
 """Mass of the empty word in a cut; the words of a cut have whole numbers of units that add up to it."""
 
+FEW = 256
+"""Points that a word and a small cloud have at most (see `cloud`)."""
+
+INVISIBLE = 1e-9
+"""A word of this size relative to the attractor is a point, however many addresses start with it."""
+
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
 """The empty word."""
 

@@ -20,6 +20,8 @@ CORE = (
     "tree",
     "polygon",
     "ifs",
+    "grammar",
+    "words",
     "shapes",
     "morph",
     "heap",
@@ -27,6 +29,9 @@ CORE = (
     "gap",
     "recurrent",
     "decision",
+    # Shapes in space, from their maps to their states.
+    "space",
+    "deciding",
     "connectedness",
     "locus",
     "report",
@@ -37,8 +42,6 @@ CORE = (
     "path",
     # It ends with the path through the morph that it found.
     "matching",
-    "grammar",
-    "words",
     "pieces",
     "chaos",
     "spreading",

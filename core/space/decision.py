@@ -1,0 +1,231 @@
+"""The state of an attractor in space, from its maps to a verdict (see `core.decision`)."""
+
+from __future__ import annotations
+
+import math
+from collections import namedtuple
+from collections.abc import Generator
+
+import numpy as np
+
+from .. import enclosure
+from ..decision import POINT, STACK, WORK, set_whole
+from ..kernels import njit
+from ..overlap import MEET, SLACK, UNKNOWN, join, surely_one_piece
+from ..states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
+from .enclosure import determinant, enclosing_ball, fixed_point, mean_fixed_point, shrinking_words
+from .gap import empty_search, measure_gap
+from .overlap import BUDGET, pair_test
+from .tree import CAPACITY, NORM, View, center, empty_tree, plant
+
+EASY_BUDGET = 256
+"""Pairs of pieces looked at in the first stage; `overlap.BUDGET` in the second, if need be."""
+
+Desk = namedtuple("Desk", "tree search first second key left right between points")
+"""Work space, made once for many attractors."""
+
+
+@njit(nogil=True, cache=True)
+def empty_desk(count):
+    """Work space for N maps."""
+    pairs = max(1, count * (count - 1) // 2)
+    return Desk(
+        empty_tree(),
+        empty_search(count),
+        np.empty(STACK, np.int32),
+        np.empty(STACK, np.int32),
+        np.empty(STACK),
+        np.empty(pairs, np.int64),
+        np.empty(pairs, np.int64),
+        np.empty(pairs),
+        np.empty((count, 3)),
+    )
+
+
+@njit(nogil=True, cache=True)
+def decide(desk, areas, view, tolerance, labels):
+    """State of one attractor, and in `labels` (N,) the component that each attractorlet is known to belong to.
+
+    The area certificate holds in any number of dimensions: `areas` (N,) are the volumes of the maps here.
+    """
+    tree, count = desk.tree, labels.shape[0]
+    left, right, between = desk.left, desk.right, desk.between
+    known = 0
+    for i in range(count):
+        labels[i] = i
+        x, y, z = center(tree, i, view)
+        for j in range(i + 1, count):
+            p, q, r = center(tree, j, view)
+            apart = math.sqrt((x - p) * (x - p) + (y - q) * (y - q) + (z - r) * (z - r))
+            apart -= view.radius * (tree.word[i, NORM] + tree.word[j, NORM])
+            if apart > view.slack:
+                continue
+            place = known
+            while place > 0 and between[place - 1] > apart:
+                between[place], left[place], right[place] = between[place - 1], left[place - 1], right[place - 1]
+                place -= 1
+            between[place], left[place], right[place] = apart, i, j
+            known += 1
+    for budget in (EASY_BUDGET, BUDGET):
+        still_open = 0
+        for pair in range(known):
+            i, j = left[pair], right[pair]
+            if labels[i] == labels[j]:
+                continue
+            outcome = pair_test(tree, count, view, i, j, tolerance, budget, desk.first, desk.second, desk.key)
+            if outcome == MEET:
+                join(labels, i, j)
+                if surely_one_piece(labels, areas):
+                    return CONNECTED
+            elif outcome == UNKNOWN:
+                left[still_open], right[still_open] = i, j
+                still_open += 1
+        known = still_open
+        if known == 0:
+            return DISCONNECTED
+    for pair in range(known):
+        if labels[left[pair]] != labels[right[pair]]:
+            return UNDECIDED
+    return DISCONNECTED
+
+
+@njit(nogil=True, cache=True)
+def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, first, state, gap, labels):
+    """Decide some attractors that share their linear parts, from the `first` on; arguments as in `column_steps`.
+
+    Stops after `WORK`, so that a caller can look up. `state` (V,), `gap` (V, 2) and `labels` (V, N) are written.
+
+    Returns
+    -------
+    int
+        The first that is left.
+    """
+    nodes, count = along.shape[0], linear.shape[0]
+    for node in range(first, nodes):
+        gap[node, 0] = gap[node, 1] = np.nan
+        for i in range(count):
+            labels[node, i] = i
+    outcome, parent, letter, product, size, limit = shrinking_words(linear)
+    if outcome != enclosure.COVERED:
+        for node in range(first, nodes):
+            state[node] = NO_ATTRACTOR if outcome == enclosure.NO_ATTRACTOR else UNDECIDED
+        return nodes
+    areas = np.empty(count)
+    for i in range(count):
+        areas[i] = abs(determinant(linear[i]))
+    if first < nodes and surely_one_piece(labels[first], areas):
+        for node in range(first, nodes):
+            set_whole(node, 0.0, state, gap, labels)
+        return nodes
+    moved, translation = np.empty((count, 3)), np.empty((count, 3))
+    for i in range(count):
+        for axis in range(3):
+            translation[i, axis] = start[i, axis] + along[nodes // 2] * drift[i, axis]
+    origin = mean_fixed_point(linear, translation)
+    for i in range(count):
+        # About an origin close by, so that a shape far away is as precise as any.
+        for axis in range(3):
+            row = linear[i, 3 * axis : 3 * axis + 3]
+            image = row[0] * origin[0] + row[1] * origin[1] + row[2] * origin[2]
+            moved[i, axis] = start[i, axis] + image - origin[axis]
+    tree = desk.tree
+    plant(tree, linear, moved, drift)
+    tree.used[1] = 0
+    for node in range(first, nodes):
+        if tree.used[1] > WORK:
+            return node
+        for i in range(count):
+            for axis in range(3):
+                translation[i, axis] = moved[i, axis] + along[node] * drift[i, axis]
+        x, y, z, radius = enclosing_ball(linear, translation, parent, letter, product, size, limit)
+        if radius <= POINT * (abs(origin[0] + x) + abs(origin[1] + y) + abs(origin[2] + z)):
+            set_whole(node, 0.0, state, gap, labels)
+            continue
+        if tree.used[0] > CAPACITY // 2:
+            plant(tree, linear, moved, drift)
+        view = View(x, y, z, along[node], radius, SLACK * max(radius, abs(x) + abs(y) + abs(z)))
+        state[node] = decide(desk, areas, view, tolerance, labels[node])
+        if state[node] == CONNECTED:
+            set_whole(node, tolerance, state, gap, labels)
+        elif with_gap:
+            points = find_points(desk, linear, translation, view)
+            low, high = measure_gap(tree, view, tolerance, points, labels[node].copy(), desk.search)
+            gap[node, 0] = max(low / radius, SLACK) / 2 if state[node] == DISCONNECTED else 0.0
+            gap[node, 1] = max(high / (2 * radius), tolerance / 2, gap[node, 0])
+    return nodes
+
+
+@njit(nogil=True, cache=True)
+def find_points(desk, linear, translation, view):
+    """Points (P, 3) on the attractor, about the centre of the ball: the fixed points of the maps."""
+    found = 0
+    for i in range(linear.shape[0]):
+        x, y, z, known = fixed_point(linear[i], translation[i, 0], translation[i, 1], translation[i, 2])
+        if known:
+            desk.points[found, 0], desk.points[found, 1], desk.points[found, 2] = x - view.x, y - view.y, z - view.z
+            found += 1
+    return desk.points[:found]
+
+
+def column_steps(
+    linear: np.ndarray, start: np.ndarray, drift: np.ndarray, along: np.ndarray, tolerance: float, with_gap: bool
+) -> Generator[None, None, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """States of attractors that share their linear parts, as those of one u do, in steps of a few milliseconds.
+
+    Parameters
+    ----------
+    linear : (N, 9)
+    start, drift : (N, 3)
+    along : (V,)
+        The translations of attractor k are ``start + along[k] * drift``.
+    tolerance : float
+        Relative to the enclosing diameter.
+    with_gap : bool
+        Whether to measure the gaps.
+
+    Returns
+    -------
+    As `core.decision.column_steps`.
+    """
+    nodes, count = len(along), len(linear)
+    state, gap, labels = np.empty(nodes, np.uint8), np.empty((nodes, 2)), np.empty((nodes, count), np.int64)
+    desk, done = empty_desk(count), 0
+    while done < nodes:
+        done = decide_drift(
+            desk, linear, start, drift, along, float(tolerance), bool(with_gap), done, state, gap, labels
+        )
+        yield
+    return state, gap, labels
+
+
+def decide_frames(
+    linear: np.ndarray, translation: np.ndarray, tolerance: float, with_gap: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """States of attractors of any maps (F, N, 9), (F, N, 3), such as the frames of a path; as `column_steps`."""
+    return decide_each(linear, translation, float(tolerance), bool(with_gap))
+
+
+@njit(nogil=True, cache=True)
+def decide_each(linear, translation, tolerance, with_gap):
+    """`decide_frames` as a kernel."""
+    frames, count = linear.shape[0], linear.shape[1]
+    state, gap = np.empty(frames, np.uint8), np.empty((frames, 2))
+    labels = np.empty((frames, count), np.int64)
+    desk = empty_desk(count)
+    drift, along, zero = np.zeros((count, 3)), np.zeros(1), np.int64(0)
+    for k in range(frames):
+        here = slice(k, k + 1)
+        decide_drift(
+            desk,
+            linear[k],
+            translation[k],
+            drift,
+            along,
+            tolerance,
+            with_gap,
+            zero,
+            state[here],
+            gap[here],
+            labels[here],
+        )
+    return state, gap, labels
