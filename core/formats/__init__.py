@@ -80,7 +80,7 @@ def read_file(path: str | Path) -> Reading:
 
 
 def read_shapes(path: str | Path) -> dict[str, IFS]:
-    """Read the IFSs of the plane in a file; `read_file` also gives the other entries, and what is wrong.
+    """Read the IFSs in a file, of the plane or of space; `read_file` also gives the other entries, and what is wrong.
 
     Parameters
     ----------

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..ifs import IFS, WEIGHT_FLOOR, IFSError
+from ..ifs import IFS, IFSError
+from ..space.ifs import SpaceIFS
 
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 """A number as programs write it; Python's own reading would also take underscores, words and other digits."""
@@ -77,23 +78,21 @@ class Entry:
         """The weights (N,), or where the file has none the areas or volumes of the maps, none too small."""
         if self.weights is not None:
             return self.weights
-        if self.dimension == 2:
-            return IFS(self.maps).weights
-        volumes = np.abs(np.linalg.det(self.maps[:, :, :3]))
-        total = volumes.sum()
-        return np.maximum(volumes, WEIGHT_FLOOR * total) if total > 0 else np.ones(self.count)
+        return self._kind(self.maps).weights
+
+    @property
+    def _kind(self) -> type[IFS]:
+        return IFS if self.dimension == 2 else SpaceIFS
 
     def ifs(self) -> IFS:
-        """Return the shape as an IFS, a recurrent one if it has transitions.
+        """Return the shape as an IFS, a recurrent one if it has transitions, a `SpaceIFS` if it lies in space.
 
         Raises
         ------
         IFSError
-            If the shape lies in space, or has transitions that leave no map to follow another.
+            If it has transitions that leave no map to follow another, or any in space.
         """
-        if self.dimension == 3:
-            raise IFSError(f"{called(self.name)} lies in space; an IFS here has maps of the plane.")
-        return IFS(self.maps, self.weights, self.name, self.transitions)
+        return self._kind(self.maps, self.weights, self.name, self.transitions)
 
 
 @dataclass(frozen=True)
@@ -113,7 +112,7 @@ class Reading:
 
     @property
     def shapes(self) -> dict[str, IFS]:
-        """The entries that are IFSs of the plane, by name."""
+        """The entries that are IFSs, by name."""
         found = {}
         for entry in self.entries:
             with suppress(IFSError):

@@ -9,6 +9,7 @@ from core.formats import FormatError, read_text, write_text
 from core.formats.entry import Entry
 from core.ifs import IFS
 from core.shapes import SHAPES
+from core.space.ifs import SpaceIFS
 
 FERN = """
 fern {
@@ -49,7 +50,12 @@ def test_entry_in_space():
     assert (entry.name, entry.dimension) == ("3dfern", 3)
     np.testing.assert_array_equal(entry.maps[1], [[0.85, 0, 0, 0], [0, 0.85, 0.1, 1.6], [0, -0.1, 0.85, 0]])
     np.testing.assert_array_equal(entry.weights, [0.01, 0.85, 0.07, 0.07])
-    assert read_text(FERN_IN_SPACE).shapes == {}
+    (shape,) = read_text(FERN_IN_SPACE).shapes.values()
+    assert isinstance(shape, SpaceIFS)
+    np.testing.assert_array_equal(shape.maps, entry.maps)
+    (again,) = read_text(write_text([Entry(shape.name, shape.maps, shape.weights)], ".ifs")).shapes.values()
+    np.testing.assert_array_equal(again.maps, shape.maps)
+    np.testing.assert_array_equal(again.weights, shape.weights)
 
 
 @pytest.mark.parametrize(
