@@ -1,4 +1,7 @@
-"""The library of named shapes in space, each built from its geometry; as `core.shapes` for the plane."""
+"""The library of named shapes in space, each built from its geometry; as `core.shapes` for the plane.
+
+They stand upright along y, as those of the plane do, and the entries of Fractint's files.
+"""
 
 from itertools import product
 
@@ -7,7 +10,7 @@ import numpy as np
 from .affine import turned
 from .ifs import SpaceIFS
 
-TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [1 / 2, 3**0.5 / 2, 0], [1 / 2, 3**0.5 / 6, (2 / 3) ** 0.5]])
+TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [1 / 2, 0, -(3**0.5) / 2], [1 / 2, (2 / 3) ** 0.5, -(3**0.5) / 6]])
 """Corners, with edges of length 1."""
 
 
@@ -49,7 +52,7 @@ def pyramid() -> SpaceIFS:
 
     Source: direct construction; its sides are gaskets.
     """
-    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1 / 2, 1 / 2, 2**-0.5)]
+    corners = [(0, 0, 0), (1, 0, 0), (1, 0, -1), (0, 0, -1), (1 / 2, 2**-0.5, -1 / 2)]
     return towards(1 / 2, corners, "pyramid")
 
 
@@ -90,16 +93,16 @@ def cross() -> SpaceIFS:
 
 
 def fern() -> SpaceIFS:
-    """Return a fern whose leaf bends forward and whose leaflets stand to both sides.
+    """Return a fern whose leaf curls out of the plane, with leaflets to both sides.
 
-    Source: the fern of Barnsley 1988, with a third axis: the stem leans by 0.1 in 0.85, and the leaflets are turned
-    out of the plane of the leaf. Maps are upright along z.
+    Source: the fern of Barnsley 1988, with a third axis about which all but the stem have a size, and a top that turns
+    towards it by 0.1 in 0.85.
     """
-    stem = [[0, 0, 0], [0, 0, 0], [0, 0, 0.18]]
-    top = [[0.85, 0, 0], [0, 0.85, -0.1], [0, 0.1, 0.85]]
-    right = [[0.2, 0, -0.25], [0, 0.2, 0], [0.22, 0, 0.22]]
-    left = [[-0.2, 0, 0.25], [0, 0.2, 0], [0.22, 0, 0.22]]
-    shifts = [(0, 0, 0), (0, 0, 1.6), (0, 0, 0.8), (0, 0, 0.8)]
+    stem = [[0, 0, 0], [0, 0.18, 0], [0, 0, 0]]
+    top = [[0.85, 0, 0], [0, 0.85, 0.1], [0, -0.1, 0.85]]
+    right = [[0.2, -0.25, 0], [0.22, 0.22, 0], [0, 0, 0.2]]
+    left = [[-0.2, 0.25, 0], [0.22, 0.22, 0], [0, 0, 0.2]]
+    shifts = [(0, 0, 0), (0, 1.6, 0), (0, 0.8, 0), (0, 0.8, 0)]
     maps = [np.column_stack([linear, shift]) for linear, shift in zip((stem, top, right, left), shifts, strict=True)]
     return SpaceIFS(np.array(maps), (0.03, 0.75, 0.11, 0.11), "fern in space")
 

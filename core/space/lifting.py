@@ -1,0 +1,64 @@
+"""Shapes of the plane put into space: on the floor z = 0, with maps that act on what is above it too.
+
+A map that reflects the plane is a half-turn of space about its mirror axis. So maps that reflect at one end only, which
+in the plane must pass through a line, turn over in space, and no map between two that are not flat is ever flat.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..affine import determinant
+from ..ifs import IFS, IFSError
+from ..morph import Morph
+from .ifs import SpaceIFS
+from .morph import SpaceMorph
+
+FLIPS = ("turned", "projected")
+"""What becomes of a map that reflects at one end only: it turns over through space, or stays in the plane as a line."""
+
+
+def lift(ifs: IFS) -> SpaceIFS:
+    """The shape in space, flat on the floor, that a shape of the plane is.
+
+    Each map takes heights to their product with the root of the area ``|det L|``, and turns them over if it reflects.
+
+    Raises
+    ------
+    IFSError
+        If the shape is recurrent.
+    """
+    if ifs.is_recurrent:
+        raise IFSError("A shape some of whose maps never follow each other cannot be put into space.")
+    area = determinant(ifs.linear)
+    maps = np.zeros((ifs.count, 3, 4))
+    maps[:, :2, :2], maps[:, :2, 3] = ifs.linear, ifs.translation
+    maps[:, 2, 2] = np.sign(area) * np.sqrt(np.abs(area))
+    return SpaceIFS(maps, ifs.weights, ifs.name)
+
+
+def morph_between(
+    initial: IFS, final: IFS, scheme: str = "polar", winding: np.ndarray | None = None, flip: str = "projected"
+) -> Morph:
+    """The morph between two shapes of the plane, of space, or one of each.
+
+    Parameters
+    ----------
+    initial, final, scheme, winding
+        As for `Morph`.
+    flip : str
+        One of `FLIPS`. With ``turned`` the morph of two shapes of the plane goes through space if a map flips.
+
+    Raises
+    ------
+    IFSError
+        As `Morph`.
+    """
+    if flip not in FLIPS:
+        raise IFSError(f"There is no flip “{flip}”; choose one of {', '.join(FLIPS)}.")
+    if initial.DIMENSION == final.DIMENSION == 2:
+        morph = Morph(initial, final, scheme, winding)
+        if flip == "projected" or not morph.flips or morph.is_recurrent:
+            return morph
+    initial, final = (lift(ifs) if ifs.DIMENSION == 2 else ifs for ifs in (initial, final))
+    return SpaceMorph(initial, final, scheme, winding)
