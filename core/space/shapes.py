@@ -96,9 +96,9 @@ def fern() -> SpaceIFS:
     """Return a fern whose leaf curls out of the plane, with leaflets to both sides.
 
     Source: the fern of Barnsley 1988, with a third axis about which all but the stem have a size, and a top that turns
-    towards it by 0.1 in 0.85.
+    towards it by 0.1 in 0.85. The stem is longer, for the curl makes the leaf short.
     """
-    stem = [[0, 0, 0], [0, 0.18, 0], [0, 0, 0]]
+    stem = [[0, 0, 0], [0, 0.4, 0], [0, 0, 0]]
     top = [[0.85, 0, 0], [0, 0.85, 0.1], [0, -0.1, 0.85]]
     right = [[0.2, -0.25, 0], [0.22, 0.22, 0], [0, 0, 0.2]]
     left = [[-0.2, 0.25, 0], [0.22, 0.22, 0], [0, 0, 0.2]]
