@@ -119,7 +119,7 @@ def _imported(module: str) -> frozenset[str]:
     """A module and those that it imports, directly or not; all imports of modules with kernels are at line starts."""
     text = _source(module).decode("utf-8")
     names = set()
-    for dots, name, imported in re.findall(r"^from (\.+)(\w*) import ([\w, ]*)", text, re.MULTILINE):
+    for dots, name, imported in re.findall(r"^from (\.+)([\w.]*) import ([\w, ]*)", text, re.MULTILINE):
         package = module.split(".")[: -len(dots)]
         names.update(".".join([*package, part]) for part in ([name] if name else imported.split(", ")))
     return frozenset({module}).union(*(_imported(name) for name in names if _path(name).exists()))

@@ -30,6 +30,8 @@ from .raster import fit_window, render
 from .report import check_frames
 from .shading import attractorlet_colors, shade
 from .shapes import SHAPES
+from .space.morph import SpaceMorph
+from .space.shapes import SPACE_SHAPES
 
 SIZE = (64, 48)
 """Of pictures, in pixels: kernels do not care."""
@@ -72,6 +74,14 @@ def _points() -> None:
     point_cloud(SHAPES["gasket"], 1000, threads=1)
 
 
+def _space() -> None:
+    shape = SPACE_SHAPES["Sierpinski tetrahedron"]
+    shape.require_attractor()
+    point_cloud(shape, 1000, threads=1)
+    check_frames(SpaceMorph(SPACE_SHAPES["turned tetrahedron"], shape), np.zeros((2, 3)), threads=1)
+    compute_locus(SpaceMorph(SPACE_SHAPES["turned tetrahedron"], shape), RESOLUTION, threads=1)
+
+
 def _paths() -> None:
     connectedness(SHAPES["gasket"])
     whole, broken = (Morph(SHAPES[name], SHAPES["gasket"]) for name in ("turned gasket", "terdragon"))
@@ -85,7 +95,7 @@ def _matches() -> None:
     match(SHAPES["twindragon"], SHAPES["square"], 8, threads=1)
 
 
-PARTS = {"pictures": (_pictures, _points), "paths": (_shapes, _paths, _matches)}
+PARTS = {"pictures": (_pictures, _points, _space), "paths": (_shapes, _paths, _matches)}
 """What takes about as long as another, for as many processes."""
 
 

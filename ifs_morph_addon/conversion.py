@@ -10,21 +10,29 @@ import numpy as np
 
 from ..core.affine import from_parameters, to_parameters
 from ..core.connectedness import Connectedness, connectedness
-from ..core.ifs import IFS, IFSError
+from ..core.ifs import IFS, Contractivity, IFSError
 from ..core.matching import Pair, morph_of_pairs
 from ..core.morph import SCHEMES, Morph
 from ..core.raster import fit_window as fitted_window
 from ..core.shading import attractorlet_colors
+from ..core.space.ifs import SpaceIFS
+from ..core.space.lifting import FLIPS, morph_between
 from . import fcurves, pairs, preparation
 
 FIT_SAMPLES = 33
 """Places along the path whose attractors the window must hold."""
+
+BOX_MARGIN = 0.05
+"""Room on each side of a shape in space, relative to the longest side of its box."""
 
 NORM_SAMPLES = 129
 """Places along the path that the norms of the maps are taken over."""
 
 MOST_RECURRENT = 32
 """Maps of a recurrent shape at most: the longest row of numbers that a property of Blender holds."""
+
+
+NO_PICTURE = "A shape in space has no picture: show it as a point cloud (Add > IFS Morph > Point Cloud)."
 
 
 def identifier(name: str) -> str:
@@ -38,10 +46,11 @@ def core_name(item: str, names: tuple[str, ...]) -> str:
 
 
 def shape_maps(shape) -> np.ndarray:
-    """Maps (N, 2, 3) of a shape."""
-    flat = np.empty(6 * len(shape.maps), dtype=np.float32)
-    shape.maps.foreach_get("matrix", flat)
-    return flat.reshape(-1, 2, 3).astype(float)
+    """Maps (N, 2, 3) of a shape, or (N, 3, 4) of one in space."""
+    stored, rows, columns = ("matrix_in_space", 3, 4) if shape.in_space else ("matrix", 2, 3)
+    flat = np.empty(rows * columns * len(shape.maps), dtype=np.float32)
+    shape.maps.foreach_get(stored, flat)
+    return flat.reshape(-1, rows, columns).astype(float)
 
 
 def shape_colors(shape) -> np.ndarray:
@@ -71,13 +80,13 @@ def shape_ifs(shape) -> IFS:
     shape.maps.foreach_get("weight", weights)
     transitions = shape_transitions(shape)
     chances = None if transitions is None else transitions.tobytes()
-    return _ifs(shape_maps(shape).tobytes(), weights.tobytes(), shape.name, chances)
+    return _ifs(shape_maps(shape).tobytes(), weights.tobytes(), shape.name, chances, shape.in_space)
 
 
 def shape_transitions(shape) -> np.ndarray | None:
     """Transitions (N, N) of a recurrent shape, None of a plain one; raises IFSError."""
     count = len(shape.maps)
-    if not shape.recurrent:
+    if not shape.recurrent or shape.in_space:
         return None
     if count > MOST_RECURRENT:
         raise IFSError(
@@ -90,15 +99,16 @@ def shape_transitions(shape) -> np.ndarray | None:
 
 
 @lru_cache(maxsize=64)
-def _ifs(maps: bytes, weights: bytes, name: str, transitions: bytes | None) -> IFS:
+def _ifs(maps: bytes, weights: bytes, name: str, transitions: bytes | None, in_space: bool) -> IFS:
     weights = np.frombuffer(weights, dtype=np.float32).astype(float)
     if transitions is not None:
         transitions = np.frombuffer(transitions).reshape(len(weights), -1)
-    ifs = IFS(np.frombuffer(maps).reshape(-1, 2, 3), None, name, transitions)
+    kind, rows = (SpaceIFS, 3) if in_space else (IFS, 2)
+    ifs = kind(np.frombuffer(maps).reshape(-1, rows, rows + 1), None, name, transitions)
     if not weights.any():
         return ifs
     # A weight of zero stands for the share that the map has by default.
-    return IFS(ifs.maps, np.where(weights == 0, ifs.weights, weights), name, transitions)
+    return kind(ifs.maps, np.where(weights == 0, ifs.weights, weights), name, transitions)
 
 
 def morph_of(settings) -> Morph:
@@ -106,19 +116,21 @@ def morph_of(settings) -> Morph:
     initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
     if has_pairs(settings) and not (initial.is_recurrent or final.is_recurrent):
         return _paired_morph(initial, final, settings.scheme, current_pairs(settings))
-    if initial.count != final.count:
+    if initial.count != final.count and not is_in_space(settings):
         raise IFSError(
             f"The initial shape has {initial.count} maps and the final one {final.count}; press Morph to pair them. "
             "Without pairs both must have as many."
         )
     winding = np.zeros(final.count, dtype=np.int32)
     settings.final.maps.foreach_get("winding", winding)
-    return _morph(initial, final, settings.scheme, winding.tobytes())
+    # A picture shows what stays in the plane.
+    flip = core_name(settings.flip, FLIPS) if settings.kind == "POINTS" else "projected"
+    return _morph(initial, final, settings.scheme, winding.tobytes(), flip)
 
 
 @lru_cache(maxsize=16)
-def _morph(initial: IFS, final: IFS, scheme: str, winding: bytes) -> Morph:
-    return Morph(initial, final, core_name(scheme, SCHEMES), np.frombuffer(winding, dtype=np.int32))
+def _morph(initial: IFS, final: IFS, scheme: str, winding: bytes, flip: str) -> Morph:
+    return morph_between(initial, final, core_name(scheme, SCHEMES), np.frombuffer(winding, dtype=np.int32), flip)
 
 
 @lru_cache(maxsize=16)
@@ -126,9 +138,14 @@ def _paired_morph(initial: IFS, final: IFS, scheme: str, paired: tuple[Pair, ...
     return morph_of_pairs(initial, final, paired, core_name(scheme, SCHEMES))
 
 
+def is_in_space(settings) -> bool:
+    """Whether one of an object's shapes lies in space."""
+    return settings.initial.in_space or settings.final.in_space
+
+
 def has_pairs(settings) -> bool:
     """Whether an object's maps are paired otherwise than map k with map k."""
-    return len(settings.matching.pairs) > 0
+    return len(settings.matching.pairs) > 0 and not is_in_space(settings)
 
 
 def current_pairs(settings) -> tuple[Pair, ...]:
@@ -213,21 +230,24 @@ def write_shape(shape, ifs: IFS) -> None:
     ------
     IFSError
         If the shape has more maps and will not let go of them: a library override keeps those of its library; or if
-        the IFS is recurrent with more than `MOST_RECURRENT` maps.
+        the IFS is recurrent with more than `MOST_RECURRENT` maps, or lies in space while the object shows a picture.
     """
     if ifs.transitions is not None and ifs.count > MOST_RECURRENT:
         raise IFSError(
             f"The IFS “{ifs.name}” is recurrent and has {ifs.count} maps; an object can hold {MOST_RECURRENT} of such."
         )
+    if ifs.DIMENSION == 3 and shape.id_data.ifs_morph.kind == "IMAGE":
+        raise IFSError(NO_PICTURE)
     maps = shape.maps
     _resize(maps, ifs.count)
-    by_area = np.allclose(IFS(ifs.maps).weights, ifs.weights)
+    by_area = np.allclose(type(ifs)(ifs.maps).weights, ifs.weights)
     for k, (item, color) in enumerate(zip(maps, attractorlet_colors(ifs.count), strict=True)):
         item.name = f"Map {k + 1}"
         item.color = color[:3]
         item.weight = 0.0 if by_area else float(ifs.weights[k])
         item.winding = 0
-    maps.foreach_set("matrix", ifs.maps.astype(np.float32).ravel())
+    shape.in_space = ifs.DIMENSION == 3
+    maps.foreach_set("matrix_in_space" if shape.in_space else "matrix", ifs.maps.astype(np.float32).ravel())
     transitions = np.ones((ifs.count, MOST_RECURRENT), dtype=np.float32)
     shape.recurrent = ifs.transitions is not None
     if shape.recurrent:
@@ -294,9 +314,26 @@ def fit_window(owner) -> None:
     try:
         morph = morph_of(settings)
         shapes = [morph.at(*place) for place in path_samples(owner)]
-        output.window = fitted_window(shapes, tuple(output.resolution))
+        if morph.DIMENSION == 2:
+            output.window, output.depth = fitted_window(shapes, tuple(output.resolution)), (0.0, 0.0)
+        else:
+            output.window, output.depth = _fitted_box(shapes, is_in_space(settings))
     except (IFSError, ImportError):
         return  # The panel shows what is wrong; the last window will do until it is mended.
+
+
+def _fitted_box(shapes: list, in_space: bool) -> tuple[list[float], list[float]]:
+    """Window and depth that hold all of some shapes in space; those that only pass through it stay on the floor."""
+    bounds = np.array([ifs.bounds for ifs in shapes if ifs.contractivity == Contractivity.CONTRACTIVE])
+    if len(bounds) == 0:
+        raise IFSError("None of the shapes has an attractor.")
+    low, high = bounds[:, :3].min(axis=0), bounds[:, 3:].max(axis=0)
+    margin = BOX_MARGIN * (high - low).max()
+    low, high = low - margin, high + margin
+    if not in_space:
+        high[2] = max(high[2], -low[2])
+        low[2] = -high[2]
+    return [*low[:2], *high[:2]], [low[2], high[2]]
 
 
 def shape_problem(settings) -> str:
@@ -304,6 +341,8 @@ def shape_problem(settings) -> str:
     if preparation.is_running():
         return preparation.message()
     try:
+        if settings.kind == "IMAGE" and is_in_space(settings):
+            return NO_PICTURE
         morph_of(settings)
         _require_attractors(settings)
     except (IFSError, ImportError) as error:  # A numba that does not fit its numpy cannot be imported.
@@ -315,6 +354,8 @@ def match_problem(settings) -> str:
     """What keeps an object's shapes from being matched, in one sentence; empty if nothing does."""
     if preparation.is_running():
         return preparation.message()
+    if is_in_space(settings):
+        return "Shapes in space cannot be matched; plan a path with the maps in their order instead."
     try:
         for ifs in _require_attractors(settings):
             if ifs.is_recurrent:

@@ -136,6 +136,18 @@ class IFSMorphOutputSettings(bpy.types.PropertyGroup):
         override=LEAF,
         update=redraw,
     )
+    depth: FloatVectorProperty(
+        name="Depth",
+        description="Least and largest z of the points of a shape in space; zero twice for shapes of the plane",
+        size=2,
+        default=(0.0, 0.0),
+        min=-1e9,
+        max=1e9,
+        precision=3,
+        options=STILL,
+        override=LEAF,
+        update=redraw,
+    )
     point_count: IntProperty(
         name="Points",
         description="Number of points of the attractor",

@@ -28,6 +28,10 @@ SCHEMES = {
     "polar": ("Polar", "Turn by the angle and interpolate the stretch, so that shapes keep their size as they turn"),
     "log-polar": ("Log-Polar", "As Polar, with the stretch interpolated by ratios; needs maps that are not flat"),
 }
+FLIPS = {
+    "turned": ("Turned", "It turns over through the space before and behind the plane"),
+    "projected": ("Projected", "It stays in the plane and becomes a line half-way, as it does in an image"),
+}
 METHODS = {
     "planned": ("Planned", "Find a way through the connectedness locus, and swell only where there is none"),
     "straight": ("Straight", "Go straight from the initial to the final shape and swell where it would break"),
@@ -64,6 +68,19 @@ class IFSMorphMap(bpy.types.PropertyGroup):
         size=(2, 3),
         # Blender would take the default of the subtype MATRIX by columns.
         default=((0.5, 0.0, 0.0), (0.0, 0.5, 0.0)),
+        min=-1e6,
+        max=1e6,
+        precision=4,
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
+    matrix_in_space: FloatVectorProperty(
+        name="Matrix in Space",
+        description="The map of a shape in space: a row each for x', y' and z', the last column is the translation",
+        size=(3, 4),
+        subtype="MATRIX",
+        default=((0.5, 0.0, 0.0, 0.0), (0.0, 0.5, 0.0, 0.0), (0.0, 0.0, 0.5, 0.0)),
         min=-1e6,
         max=1e6,
         precision=4,
@@ -147,6 +164,14 @@ class IFSMorphShape(bpy.types.PropertyGroup):
     """An iterated function system: the initial or the final shape."""
 
     name: StringProperty(name="Name", description="What to call the shape in messages", options=STILL, override=LEAF)
+    in_space: BoolProperty(
+        name="In Space",
+        description="Whether the maps act on space and not on the plane; such a shape is shown as points",
+        default=False,
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
     maps: CollectionProperty(type=IFSMorphMap, name="Maps", override=LIST)
     recurrent: BoolProperty(
         name="Recurrent",
@@ -247,6 +272,15 @@ class IFSMorphSettings(bpy.types.PropertyGroup):
         description="How the linear parts of the maps are interpolated",
         items=_choices(SCHEMES),
         default=identifier("polar"),
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
+    flip: EnumProperty(
+        name="Flip",
+        description="What becomes of a map that reflects at one end only, among points",
+        items=_choices(FLIPS),
+        default=identifier("turned"),
         options=STILL,
         override=LEAF,
         update=refit,

@@ -18,7 +18,8 @@ def edited_owner(context):
     owner = context.object
     if owner is None or owner.ifs_morph.kind == "NONE" or not owner.ifs_morph.edit_maps or context.mode != "OBJECT":
         return None
-    return owner if is_changeable(owner) and len(edited_shape(owner).maps) else None
+    shape = edited_shape(owner)
+    return owner if is_changeable(owner) and len(shape.maps) and not shape.in_space else None
 
 
 def to_region(context, owner, places) -> np.ndarray:

@@ -11,7 +11,7 @@ from ...core.formats import SUFFIXES, Entry, FormatError, read_file, read_text, 
 from ...core.formats.entry import unused_name
 from ...core.ifs import IFSError
 from .. import preparation
-from ..conversion import fit_window
+from ..conversion import NO_PICTURE, fit_window
 from ..entries import frame_entry, require_storable, shape_entry, write_entry
 from .poll import ENDS, any_morph, editable_morph, shape_of
 
@@ -201,6 +201,8 @@ class IFSMORPH_OT_import_shapes(_Choice, ImportHelper, bpy.types.Operator):
             name, entry, problems = self.chosen()
             if not self.entry and self.options.is_invoke and len(_names(self.read, self)) > 1:
                 return self._ask_again()
+            if entry.dimension == 3 and self.target == "IMAGE":
+                raise IFSError(NO_PICTURE)
             owner, shapes = self._owner(context, name)
             for shape in shapes:
                 write_entry(shape, entry)

@@ -4,6 +4,7 @@ import bpy
 
 from ...core.ifs import IFSError
 from ...core.shapes import SHAPES
+from ...core.space.shapes import SPACE_SHAPES
 from ..conversion import fit_window, write_shape
 from .poll import ENDS, editable_morph, shape_of
 
@@ -22,12 +23,13 @@ class IFSMORPH_OT_load_shape(bpy.types.Operator):
 
     def execute(self, context):
         """Replace the maps."""
-        if self.shape not in SHAPES:
-            names = ", ".join(SHAPES)
+        library = SHAPES | SPACE_SHAPES
+        if self.shape not in library:
+            names = ", ".join(library)
             self.report({"ERROR"}, f"The library has no shape “{self.shape}”; it has {names}.")
             return {"CANCELLED"}
         try:
-            write_shape(shape_of(self, context), SHAPES[self.shape])
+            write_shape(shape_of(self, context), library[self.shape])
         except IFSError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

@@ -6,7 +6,7 @@ import numpy as np
 from ...core import raster, shading
 from ...core.ifs import IFSError
 from .. import compat
-from ..conversion import core_name, frame_colors, path_norms
+from ..conversion import NO_PICTURE, core_name, frame_colors, path_norms
 from . import materials
 from .placing import in_object
 
@@ -89,6 +89,8 @@ def signature(owner, settings, morph, frame) -> tuple:
     canvas = tuple(output.resolution), tuple(output.window), tuple(output.background)
     if frame is None:
         return canvas
+    if frame.DIMENSION == 3:
+        raise IFSError(NO_PICTURE)
     chances = None if frame.transitions is None else frame.transitions.tobytes()
     shape = frame.maps.tobytes(), frame.weights.tobytes(), chances, _norms(owner, morph, frame).tobytes()
     look = output.mode, output.antialiasing, _colors(owner, settings).tobytes()

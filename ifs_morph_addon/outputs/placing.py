@@ -22,6 +22,12 @@ def middle(window) -> tuple[float, float]:
     return (left + right) / 2, (bottom + top) / 2
 
 
+def origin_and_unit(window, depth) -> tuple[float, float, float, float]:
+    """Place in the space of the attractor that is the object's origin, and the length there of 1 in the object."""
+    nearest, furthest = depth
+    return (*middle(window), (nearest + furthest) / 2, max(unit(window), furthest - nearest))
+
+
 def in_object(points: np.ndarray, window) -> np.ndarray:
     """Points (P, 2) of the plane of the attractor in the object's space, float32 (P, 3)."""
     placed = np.zeros((len(points), 3), dtype=np.float32)

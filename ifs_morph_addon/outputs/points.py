@@ -10,7 +10,7 @@ from ...core.cloud import point_cloud
 from ...core.ifs import IFSError
 from ..conversion import frame_colors
 from . import materials
-from .placing import middle, unit
+from .placing import origin_and_unit
 
 OWN_DATA = ("nodes", "material")
 """Datablocks of the output settings that no two objects may share; their mesh is one more."""
@@ -122,7 +122,7 @@ def signature(owner, settings, morph, frame) -> tuple:
     chances = address_transitions(settings, morph)
     chances = None if chances is None else chances.tobytes()
     still = output.point_count, morph.weights_at(0.5).tobytes(), chances, _colors(settings).tobytes()
-    return frame.maps.tobytes(), tuple(output.window), output.point_radius, still
+    return frame.maps.tobytes(), (*output.window, *output.depth), output.point_radius, still
 
 
 def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
@@ -133,11 +133,10 @@ def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
         mesh.update_tag()
         return mesh
     output = settings.output
-    if not np.isfinite(output.window).all():
+    if not np.isfinite((*output.window, *output.depth)).all():
         raise IFSError("The window holds NaN; fit it again, or give it four numbers.")
-    weights, window = morph.weights_at(0.5), output.window
-    chances = address_transitions(settings, morph)
-    places = *middle(window), unit(window)
+    weights, chances = morph.weights_at(0.5), address_transitions(settings, morph)
+    places = origin_and_unit(output.window, output.depth)
     points = point_cloud(frame, output.point_count, weights, placing=places, address_transitions=chances)
     count = len(points.position)
     if len(mesh.vertices) != count or len(mesh.edges):

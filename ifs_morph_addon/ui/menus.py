@@ -3,6 +3,7 @@
 import bpy
 
 from ...core.shapes import SHAPES
+from ...core.space.shapes import SPACE_SHAPES
 
 
 class IFSMORPH_MT_add(bpy.types.Menu):
@@ -23,10 +24,19 @@ class _Library:
 
     def draw(self, context):
         """Draw one entry for each shape of the library."""
-        for name, ifs in SHAPES.items():
+        self.draw_shapes(self.layout, SHAPES)
+        self.layout.separator()
+        in_space = self.layout.column()
+        in_space.enabled = context.object is not None and context.object.ifs_morph.kind == "POINTS"
+        in_space.label(text="In space" if in_space.enabled else "In space: for point clouds")
+        self.draw_shapes(in_space, SPACE_SHAPES)
+
+    def draw_shapes(self, layout, shapes):
+        """Draw one entry for each of some shapes."""
+        for name, ifs in shapes.items():
             maps = "map" if ifs.count == 1 else "maps"
             text = f"{name[0].upper()}{name[1:]}  ({ifs.count} {maps})"
-            button = self.layout.operator("ifs_morph.load_shape", text=text)
+            button = layout.operator("ifs_morph.load_shape", text=text)
             button.shape, button.end = name, self.end
 
 

@@ -124,7 +124,17 @@ class _ShapePanel(_Panel):
             button.end, button.direction = end, direction
 
         if 0 <= shape.active_index < len(shape.maps):
-            self.draw_map(layout, shape.maps[shape.active_index])
+            draw = self.draw_map_in_space if shape.in_space else self.draw_map
+            draw(layout, shape.maps[shape.active_index])
+
+    def draw_map_in_space(self, layout, item):
+        """Draw the active map of a shape in space as a matrix."""
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(item, "weight")
+        layout.label(text="Matrix:")
+        draw_matrix(layout, item, "matrix_in_space", 4)
 
     def draw_map(self, layout, item):
         """Draw the active map as turn, stretch and shear, and as a matrix."""
@@ -137,11 +147,16 @@ class _ShapePanel(_Panel):
         column.prop(item, "shear")
         column.prop(item, "weight")
         layout.label(text="Matrix:")
-        grid = layout.column(align=True)
-        for first in (0, 3):
-            row = grid.row(align=True)
-            for index in range(first, first + 3):
-                row.prop(item, "matrix", index=index, text="")
+        draw_matrix(layout, item, "matrix", 3)
+
+
+def draw_matrix(layout, item, name, columns):
+    """Draw the numbers of a map's matrix, which has one row less than columns."""
+    grid = layout.column(align=True)
+    for first in range(0, columns * (columns - 1), columns):
+        row = grid.row(align=True)
+        for index in range(first, first + columns):
+            row.prop(item, name, index=index, text="")
 
 
 class IFSMORPH_PT_initial(_ShapePanel, bpy.types.Panel):
@@ -333,6 +348,7 @@ class IFSMORPH_PT_output(_Panel, bpy.types.Panel):
             self.draw_image(layout, settings.output)
         else:
             self.draw_points(layout, settings.output)
+            layout.prop(settings, "flip")
         layout.operator("ifs_morph.repair_output", icon="FILE_REFRESH")
 
     def draw_image(self, layout, output):

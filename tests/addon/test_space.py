@@ -1,0 +1,117 @@
+"""Shapes in space on objects: stored, shown as points, planned and keyed as those of the plane are."""
+
+import bpy
+import numpy as np
+import pytest
+
+from core.cloud import point_cloud
+from core.space.morph import SpaceMorph
+from core.space.shapes import SPACE_SHAPES
+from tests.addon.support import add, attribute, picture, show
+
+FERN = """
+3dfern (3D) {
+   .00  .00 0 .0 .18 .0 0  0.0 0.00 0 0.0 0 .01
+   .85  .00 0 .0 .85 .1 0 -0.1 0.85 0 1.6 0 .85
+   .20 -.20 0 .2 .20 .0 0  0.0 0.30 0 0.8 0 .07
+  -.20  .20 0 .2 .20 .0 0  0.0 0.30 0 0.8 0 .07
+}
+"""
+
+
+def load(initial, final):
+    """Load shapes of the library onto the active object."""
+    for end, name in (("INITIAL", initial), ("FINAL", final)):
+        assert bpy.ops.ifs_morph.load_shape(end=end, shape=name) == {"FINISHED"}
+    show()
+
+
+@pytest.fixture
+def tetrahedra(scene):
+    owner = add("POINTS")
+    load("turned tetrahedron", "Sierpinski tetrahedron")
+    return owner
+
+
+def test_points_are_those_of_the_morph_in_space(tetrahedra):
+    tetrahedra.ifs_morph.uv = 0.3, 0.6
+    show()
+    morph = SpaceMorph(SPACE_SHAPES["turned tetrahedron"], SPACE_SHAPES["Sierpinski tetrahedron"])
+    expected = point_cloud(morph.at(0.3, 0.6), 400, morph.weights_at(0.5))
+    output = tetrahedra.ifs_morph.output
+    x0, y0, x1, y1 = output.window
+    z0, z1 = output.depth
+    unit = max(x1 - x0, y1 - y0, z1 - z0)
+    placed = (expected.position - np.array([x0 + x1, y0 + y1, z0 + z1]) / 2) / unit
+    assert attribute(tetrahedra, "position") == pytest.approx(placed, abs=1e-4)
+    assert (attribute(tetrahedra, "attractorlet")[:, 0] == expected.attractorlet).all()
+    assert np.abs(attribute(tetrahedra, "position")).max() <= 0.5
+
+
+def test_a_path_is_planned_and_keyed(tetrahedra):
+    tetrahedra.ifs_morph.path.method = "STRAIGHT"
+    assert bpy.ops.ifs_morph.plan_path() == {"FINISHED"}
+    assert "all in one piece" in tetrahedra.ifs_morph.path.report.splitlines()[0]
+    before = attribute(tetrahedra, "position")
+    bpy.context.scene.frame_set(12)
+    assert not np.allclose(attribute(tetrahedra, "position"), before, atol=1e-3)
+    assert bpy.ops.ifs_morph.check_path() == {"FINISHED"}
+    assert bpy.ops.ifs_morph.compute_locus() == {"FINISHED"}
+
+
+def test_images_say_why_they_show_no_shape_in_space(scene):
+    owner = add("IMAGE")
+    before = picture(owner)
+    with pytest.raises(RuntimeError, match="point cloud"):
+        bpy.ops.ifs_morph.load_shape(end="INITIAL", shape="Menger sponge")
+    show()
+    assert (picture(owner) == before).all()
+    assert not owner.ifs_morph.initial.in_space
+    owner.ifs_morph.initial.in_space = True
+    show()
+    assert not picture(owner).any()
+
+
+def test_a_shape_of_the_plane_becomes_one_of_space(scene):
+    owner = add("POINTS")
+    load("square", "Sierpinski tetrahedron")
+    assert owner.ifs_morph.final.in_space
+    assert not owner.ifs_morph.initial.in_space
+    points = attribute(owner, "position")
+    assert np.ptp(points[:, 2]) == pytest.approx(0, abs=1e-6)
+    owner.ifs_morph.uv = 1, 1
+    show()
+    assert np.ptp(attribute(owner, "position")[:, 2]) > 0.3
+
+
+def test_an_entry_in_space_is_imported_and_exported(scene, tmp_path):
+    file = tmp_path / "ferns.ifs"
+    file.write_text(FERN)
+    assert bpy.ops.ifs_morph.import_shapes(filepath=str(file), target="POINTS") == {"FINISHED"}
+    owner = bpy.context.object
+    show()
+    assert owner.ifs_morph.initial.in_space
+    assert len(owner.ifs_morph.initial.maps) == 4
+    assert np.ptp(attribute(owner, "position"), axis=0).min() > 0.05
+    objects = len(bpy.data.objects)
+    with pytest.raises(RuntimeError, match="point cloud"):
+        bpy.ops.ifs_morph.import_shapes(filepath=str(file), target="IMAGE")
+    assert len(bpy.data.objects) == objects
+
+
+def test_maps_that_flip_turn_over_through_space(scene):
+    owner = add("POINTS")
+    load("gasket", "gasket")
+    first = owner.ifs_morph.initial.maps[0]
+    first.scale = 0.5, -0.5
+    owner.ifs_morph.uv = 0.5, 0.5
+    show()
+    assert np.ptp(attribute(owner, "position")[:, 2]) > 0.1
+    owner.ifs_morph.flip = "PROJECTED"
+    show()
+    assert np.ptp(attribute(owner, "position")[:, 2]) == 0
+    owner.ifs_morph.flip = "TURNED"
+    for end in (0, 1):
+        owner.ifs_morph.uv = end, end
+        show()
+        assert np.ptp(attribute(owner, "position")[:, 2]) == pytest.approx(0, abs=1e-6)
