@@ -79,7 +79,6 @@ def point_cloud(
         Put the points into a space of three dimensions, with its origin at a place of the plane or of space and the
         length 1 for so many units of it. Positions and radii are in that space; without z the third coordinate of a
         shape of the plane is zero.
-
     address_transitions : (N, N), optional
         Transitions that give the addresses, those of `ifs` by default. Points of addresses that `ifs` does not allow
         are not on its attractor.
