@@ -5,6 +5,7 @@ symmetries are read as those of the shape that are nearest.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -28,9 +29,29 @@ OUTDATED = "The pairs no longer fit the maps, so map k becomes map k for now: Ma
 
 def stored(matching) -> tuple[Pair, ...]:
     """Pairs as they are stored; raises IFSError if a word is none."""
+    return _pairs(*plain(matching))
+
+
+def plain(matching) -> tuple:
+    """All that the morph depends on, as texts and bytes, which are quick to read; it need not make sense."""
+    items = matching.pairs
+    arrays = [
+        np.empty(6 * len(items), np.float32),
+        np.empty(6 * len(items), np.float32),
+        np.empty(len(items), np.int32),
+    ]
+    for name, values in zip(("initial_symmetry", "final_symmetry", "winding"), arrays, strict=True):
+        items.foreach_get(name, values)
+    return tuple((item.initial, item.final) for item in items), *(values.tobytes() for values in arrays)
+
+
+def _pairs(words, initial: bytes, final: bytes, winding: bytes) -> tuple[Pair, ...]:
+    symmetries = [np.frombuffer(each, np.float32).reshape(-1, 2, 3).tolist() for each in (initial, final)]
     return tuple(
-        Pair(word_of(initial), word_of(final), *symmetries_and_winding)
-        for initial, final, *symmetries_and_winding in plain(matching)
+        Pair(word_of(first), word_of(last), _rows(before), _rows(after), turns)
+        for (first, last), before, after, turns in zip(
+            words, *symmetries, np.frombuffer(winding, np.int32).tolist(), strict=True
+        )
     )
 
 
@@ -71,27 +92,22 @@ def line(item) -> str:
 
 def fitted(initial: IFS, final: IFS, matching) -> tuple[Pair, ...] | None:
     """Pairs that are stored for two shapes, their symmetries to the last digit; None if they do not fit them."""
-    try:
-        return _fitted(initial, final, stored(matching))
-    except IFSError:
-        return None
+    return _fitted(initial, final, plain(matching))
 
 
 @lru_cache(maxsize=16)
-def _fitted(initial: IFS, final: IFS, pairs: tuple[Pair, ...]) -> tuple[Pair, ...] | None:
+def _fitted(initial: IFS, final: IFS, stored_pairs: tuple) -> tuple[Pair, ...] | None:
     if initial.is_recurrent or final.is_recurrent:
         return None
-    pairs = tuple(
-        Pair(
-            pair.initial,
-            pair.final,
-            _exact(pair.initial_symmetry, initial),
-            _exact(pair.final_symmetry, final),
-            pair.winding,
-        )
-        for pair in pairs
-    )
     try:
+        pairs = tuple(
+            replace(
+                pair,
+                initial_symmetry=_exact(pair.initial_symmetry, initial),
+                final_symmetry=_exact(pair.final_symmetry, final),
+            )
+            for pair in _pairs(*stored_pairs)
+        )
         morph_of_pairs(initial, final, pairs, "elementwise")
     except IFSError:
         return None
@@ -180,11 +196,6 @@ def exchange_maps(matching, end: str, first: int, second: int) -> None:
     for item in matching.pairs:
         word = word_of(getattr(item, end))
         setattr(item, end, text_of(tuple(places.get(letter, letter) for letter in word)))
-
-
-def plain(matching) -> list[tuple]:
-    """All that the morph depends on, as numbers and texts; it need not make sense."""
-    return [tuple(_values(item).values())[:-1] for item in matching.pairs]
 
 
 def _values(item) -> dict:
