@@ -37,6 +37,7 @@ FLAMES = {
     "mirror": FLAG + '<symmetry kind="-1"/>',
     "turns and mirror": FLAG + '<symmetry kind="-4"/>',
     "turns as maps": FLAG + '<xform weight="0.5" symmetry="1" linear="1" coefs="0.5 0.866025 -0.866025 0.5 0 0"/>',
+    "chaos": FLAG.replace("/>", ' chaos="0 1 2"/>', 1).replace('0.2"/>', '0.2" chaos="2 0.5 1"/>', 1),
     "no weight": FLAG + '<xform weight="0" linear="1" coefs="0.5 0 0 0.5 2 2"/>',
 }
 
@@ -110,7 +111,7 @@ def test_a_mistaken_reading_would_be_noticed(draw, mistake):
         assert_same_pixels(draw(flame), type(ifs)(maps))
 
 
-@pytest.mark.parametrize("kind", ["coefs", "turns", "turns and mirror", "turns as maps"])
+@pytest.mark.parametrize("kind", ["coefs", "turns", "turns and mirror", "turns as maps", "chaos"])
 def test_measure_is_that_of_flam3(draw, kind):
     """The brightness that flam3 gives to each part of the picture, against the measure of the maps that were read."""
     flame = flame_of(FLAMES[kind]).replace('brightness="100"', 'brightness="4"')
