@@ -11,7 +11,7 @@ import numpy as np
 
 from .affine import determinant, singular_values, spectral_radius
 from .enclosure import enclosing_disc, shrinking_words
-from .polygon import outer_polygon
+from .polygon import outer_polygon, recurrent_reach
 
 WEIGHT_FLOOR = 0.01
 """Least default weight of a map as a share of all areas, so that a flat map is drawn too."""
@@ -212,7 +212,10 @@ class IFS:
             return (*center, *center)
         translation = self.translation + self.linear @ center - center
         linear = np.ascontiguousarray(self.linear).reshape(-1, 4)
-        reach, _ = outer_polygon(linear, translation, radius, BOUNDS_DIRECTIONS, 1e-6 * radius)
+        if self.is_recurrent:
+            reach = recurrent_reach(linear, translation, self.follows, radius, BOUNDS_DIRECTIONS, 1e-6 * radius)
+        else:
+            reach, _ = outer_polygon(linear, translation, radius, BOUNDS_DIRECTIONS, 1e-6 * radius)
         quarter = BOUNDS_DIRECTIONS // 4
         right, top, left, bottom = reach[::quarter]
         return (

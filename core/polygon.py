@@ -114,6 +114,32 @@ def outer_polygon(linear, translation, radius, directions, tolerance):
     return reach, corners
 
 
+def recurrent_reach(linear, translation, follows, radius, directions, tolerance):
+    """Reaches (directions,) of the attractor of a recurrent IFS: `shrink_polygon` with one for each attractorlet.
+
+    Parameters
+    ----------
+    linear, translation : (N, 4), (N, 2)
+    follows : (N, N) bool
+        follows[i, k]: whether the letter k may come after i.
+    radius, directions, tolerance
+        As above.
+    """
+    normal, sector, share = directions_seen(linear, directions)
+    next_sector = (sector + 1) % directions
+    offset = translation @ normal.T + 1e-14 * radius
+    reach = np.full((len(linear), directions), float(radius))
+    for _ in range(STEPS):
+        inside = np.where(follows[:, :, None], reach, -np.inf).max(axis=1)
+        ends = np.take_along_axis(inside, sector, 1), np.take_along_axis(inside, next_sector, 1)
+        shrunk = np.minimum(share[..., 0] * ends[0] + share[..., 1] * ends[1] + offset, reach)
+        change = (reach - shrunk).max()
+        reach = shrunk
+        if change <= tolerance:
+            break
+    return reach.max(axis=0)
+
+
 @njit(nogil=True, cache=True)
 def furthest(corners, x, y):
     """Index of the corner that is furthest in a direction, and how far it is times the direction's length."""

@@ -90,6 +90,17 @@ def test_a_set_is_that_of_the_allowed_words(name, fixed):
 
 
 @pytest.mark.parametrize("name", SHAPES_HERE)
+def test_bounds_hold_the_allowed_words_and_little_more(name):
+    ifs = SHAPES_HERE[name]
+    low, high = np.split(np.array(ifs.bounds), 2)
+    # In units of the box; few points come to the far end of a letter that is seldom used.
+    points = (point_cloud(ifs, 20_000).position - low) / (high - low)
+    assert points.min() > -1e-6
+    assert points.max() < 1 + 1e-6
+    assert np.all(points.max(axis=0) > 0.95)
+
+
+@pytest.mark.parametrize("name", SHAPES_HERE)
 def test_attractorlets_are_those_of_the_allowed_words(name):
     ifs = SHAPES_HERE[name]
     window = view(ifs)
