@@ -114,7 +114,7 @@ def _ifs(maps: bytes, weights: bytes, name: str, transitions: bytes | None, in_s
 def morph_of(settings) -> Morph:
     """The morph between an object's two shapes, made of its pairs if it has any; raises IFSError."""
     initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
-    if has_pairs(settings) and not (initial.is_recurrent or final.is_recurrent):
+    if has_pairs(settings) and not (initial.is_recurrent or final.is_recurrent or is_in_space(settings)):
         return _paired_morph(initial, final, settings.scheme, current_pairs(settings))
     if initial.count != final.count and not is_in_space(settings):
         raise IFSError(
