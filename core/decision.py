@@ -15,24 +15,32 @@ import numpy as np
 from . import enclosure
 from .enclosure import POINT, enclosing_disc, mean_fixed_point, move_origin, shrinking_words
 from .gap import empty_search, measure_gap
+from .heap import sift_down, sift_up
 from .kernels import njit
-from .overlap import BUDGET, MEET, SLACK, STACK, UNKNOWN, join, pair_test, surely_one_piece
+from .overlap import BUDGET, MEET, ROUNDING, SLACK, STACK, UNKNOWN, join, pair_test, surely_one_piece
 from .polygon import directions_seen, shrink_polygon
 from .recurrent import decide_recurrent
 from .states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
-from .tree import CAPACITY, NORM, View, center, empty_tree, plant
+from .tree import CAPACITY, NORM, View, center, empty_tree, plant, prune
 
 DISC_BUDGET = 256
 """Pairs of pieces looked at in the first stage, which knows discs only; `overlap.BUDGET` in the second."""
 
+WORDS_A_MAP = 8000
+MANY = 32
+"""Room of the tree for each of so many maps: enough for a pair test to its end, whatever was looked at before."""
+
 WORK = 30_000
-"""Pairs of pieces looked at in one go, a few tens of milliseconds at most."""
+"""Pairs of pieces after which no other attractor is begun in one go."""
+
+MOST_WORK = 300_000
+"""Pairs of pieces looked at for one attractor, after which pairs of attractorlets are left open."""
 
 DIRECTIONS = 16
 POLYGON_PRECISION = 1e-3
 """Of the outer polygon: its sides, and the change at which it is good enough, relative to the disc's radius."""
 
-Desk = namedtuple("Desk", "tree search first second key left right between reach corners unit points")
+Desk = namedtuple("Desk", "tree search first second key left right between order nearest reach corners unit points")
 """Work space, made once for many attractors."""
 
 
@@ -41,7 +49,7 @@ def empty_desk(count):
     """Work space for N maps."""
     pairs = max(1, count * (count - 1) // 2)
     return Desk(
-        empty_tree(CAPACITY),
+        empty_tree(max(CAPACITY, min(count, MANY) * WORDS_A_MAP)),
         empty_search(count),
         np.empty(STACK, np.int32),
         np.empty(STACK, np.int32),
@@ -49,6 +57,8 @@ def empty_desk(count):
         np.empty(pairs, np.int64),
         np.empty(pairs, np.int64),
         np.empty(pairs),
+        np.empty(pairs, np.int64),
+        np.empty(pairs, np.int64),
         np.empty(DIRECTIONS),
         np.empty((DIRECTIONS, 2)),
         np.empty((count, 2)),
@@ -65,7 +75,7 @@ def decide(desk, linear, follows, areas, seen, view, tolerance, labels):
     """
     count = linear.shape[0]
     tree = desk.tree
-    left, right, between = desk.left, desk.right, desk.between
+    left, right, between, order, nearest = desk.left, desk.right, desk.between, desk.order, desk.nearest
     known = 0
     for i in range(count):
         labels[i] = i
@@ -74,24 +84,30 @@ def decide(desk, linear, follows, areas, seen, view, tolerance, labels):
             other_x, other_y = center(tree, j, view)
             apart = math.sqrt((one_x - other_x) * (one_x - other_x) + (one_y - other_y) * (one_y - other_y))
             apart -= view.radius * (tree.word[i, NORM] + tree.word[j, NORM])
-            if apart > view.slack:
-                continue
-            place = known
-            while place > 0 and between[place - 1] > apart:
-                between[place], left[place], right[place] = between[place - 1], left[place - 1], right[place - 1]
-                place -= 1
-            between[place], left[place], right[place] = apart, i, j
-            known += 1
+            if apart <= view.slack:
+                between[known], left[known], right[known], order[known] = apart, i, j, known
+                sift_up(order, between, known)
+                known += 1
+    # Nearest first.
+    for length in range(known - 1, -1, -1):
+        nearest[known - 1 - length] = order[0]
+        order[0] = order[length]
+        sift_down(order, between, length)
+    begun = tree.used[1]
     for stage in range(2):
         corners = desk.corners[: stage * DIRECTIONS]
         if stage == 1:
             find_polygon(desk, linear, seen, view)
         still_open = 0
-        for pair in range(known):
-            i, j = left[pair], right[pair]
+        for place in range(known):
+            i, j = left[nearest[place]], right[nearest[place]]
             if labels[i] == labels[j]:
                 continue
+            if tree.used[0] > tree.child.shape[0] // 2:
+                prune(tree, count)
             budget = DISC_BUDGET if stage == 0 else BUDGET
+            if tree.used[1] - begun > MOST_WORK:
+                budget = 0
             outcome = pair_test(
                 tree, follows, view, i, j, tolerance, corners, budget, desk.first, desk.second, desk.key
             )
@@ -100,13 +116,13 @@ def decide(desk, linear, follows, areas, seen, view, tolerance, labels):
                 if surely_one_piece(labels, areas):
                     return CONNECTED
             elif outcome == UNKNOWN:
-                left[still_open], right[still_open] = i, j
+                nearest[still_open] = nearest[place]
                 still_open += 1
         known = still_open
         if known == 0:
             return DISCONNECTED
-    for pair in range(known):
-        if labels[left[pair]] != labels[right[pair]]:
+    for place in range(known):
+        if labels[left[nearest[place]]] != labels[right[nearest[place]]]:
             return UNDECIDED
     return DISCONNECTED
 
@@ -170,6 +186,11 @@ def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap
     origin_x, origin_y = mean_fixed_point(linear, translation)
     # About an origin close by, so that a shape far away is as precise as any.
     move_origin(linear, start, origin_x, origin_y, moved)
+    # The largest numbers that are added up, and may cancel.
+    reach, drift_reach = abs(origin_x) + abs(origin_y), 0.0
+    for i in range(count):
+        reach = max(reach, abs(moved[i, 0]) + abs(moved[i, 1]))
+        drift_reach = max(drift_reach, abs(drift[i, 0]) + abs(drift[i, 1]))
     tree = desk.tree
     plant(tree, linear, moved, drift)
     tree.used[1] = 0
@@ -180,12 +201,11 @@ def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap
             for axis in range(2):
                 translation[i, axis] = moved[i, axis] + along[node] * drift[i, axis]
         x, y, radius = enclosing_disc(linear, translation, parent, letter, product, size, limit)
-        if radius <= POINT * (abs(origin_x + x) + abs(origin_y + y)):
+        largest = reach + abs(along[node]) * drift_reach
+        if radius <= POINT * largest:
             set_whole(node, 0.0, state, gap, labels)
             continue
-        view = View(x, y, along[node], radius, SLACK * max(radius, abs(x) + abs(y)))
-        if tree.used[0] > CAPACITY // 2:
-            plant(tree, linear, moved, drift)
+        view = View(x, y, along[node], radius, SLACK * max(radius, abs(x) + abs(y)) + ROUNDING * largest)
         state[node] = decide(desk, linear, follows, areas, seen, view, tolerance, labels[node])
         if state[node] == CONNECTED:
             set_whole(node, tolerance, state, gap, labels)
@@ -196,7 +216,7 @@ def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap
                 known[i] = labels[node, i]
             low, high = measure_gap(tree, follows, view, tolerance, desk.corners, desk.points, known, desk.search)
             gap[node, 0] = max(low / radius, SLACK) / 2 if state[node] == DISCONNECTED else 0.0
-            gap[node, 1] = max(high / (2 * radius), tolerance / 2, gap[node, 0])
+            gap[node, 1] = max(high / (2 * radius), tolerance, gap[node, 0])
     return nodes
 
 

@@ -22,6 +22,9 @@ CONTRACTIVE_NORM = 0.9
 CONTRACTIVITY_BUDGET = 20_000
 """Words looked at before contractivity is given up as undecided."""
 
+SURE_NORM = 1 - 1e-9
+"""Maps of norms up to this contract, however many words it takes to come down to `CONTRACTIVE_NORM`."""
+
 TIGHT_NORM = 0.5
 TIGHT_BUDGET = 600
 """Words of at most this norm give a disc at most (1 + 0.5) / (1 - 0.5) times too large, mostly far less."""
@@ -134,7 +137,11 @@ def shrinking_words(linear, follows):
     if outcome != UNDECIDED:
         return outcome, parent, letter, product, size, TIGHT_NORM
     outcome, parent, letter, product, size = cover(linear, follows, CONTRACTIVE_NORM, np.int64(CONTRACTIVITY_BUDGET))
-    return outcome, parent, letter, product, size, CONTRACTIVE_NORM
+    largest = size[: linear.shape[0]].max()
+    if outcome != UNDECIDED or largest > SURE_NORM:
+        return outcome, parent, letter, product, size, CONTRACTIVE_NORM
+    outcome, parent, letter, product, size = cover(linear, follows, largest, np.int64(linear.shape[0]))
+    return outcome, parent, letter, product, size, largest
 
 
 @njit(nogil=True, cache=True)

@@ -16,8 +16,8 @@ from .tree import NORM, A, B, C, D, center, children
 PRECISION = 0.05
 """Relative width of the bracket of a distance at which it is known well enough."""
 
-PAIRS = 3000
-"""Pairs of pieces held at once, beside those that the search starts with."""
+PAIRS, PAIRS_A_MAP = 3000, 20
+"""Pairs of pieces held at once, beside those that the search starts with; and so many more for each map."""
 
 TIE = 1e-9
 """Weight of a pair's size in the order of the search."""
@@ -33,7 +33,7 @@ Search = namedtuple("Search", "word end tried key order")
 @njit(nogil=True, cache=True)
 def empty_search(count):
     """Work space for N maps."""
-    pairs = PAIRS + count * (count - 1) // 2
+    pairs = PAIRS + PAIRS_A_MAP * count + count * (count - 1) // 2
     return Search(
         np.empty((pairs, 2), np.int32),
         np.empty((pairs, 2), np.int32),
@@ -114,7 +114,9 @@ def measure_gap(tree, follows, view, tolerance, corners, points, labels, search)
         if child < 0:
             join(labels, i, j)
             components -= 1
-            low, high = max(low, bound - view.slack), max(high, most)
+            # The order of the search is by bounds and, a little, by sizes.
+            low = max(low, bound - view.slack - 2 * TIE * view.radius)
+            high = max(high, most + view.slack)
             continue
         for k in range(child, end):
             # The first part takes the place of the whole.

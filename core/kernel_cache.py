@@ -5,7 +5,6 @@ The only module that knows how numba keeps compiled functions. It is imported at
 
 from __future__ import annotations
 
-import pickle
 from contextlib import suppress
 from functools import partial
 from hashlib import sha256
@@ -34,7 +33,7 @@ class KernelCache(FunctionCache):
         """The kept kernel, or None where there is none or it cannot be read."""
         try:
             return super().load_overload(signature, target_context)
-        except (OSError, EOFError, pickle.UnpicklingError):
+        except Exception:  # Whatever a damaged file makes numba or pickle say.
             with suppress(OSError):
                 self.flush()
             return None

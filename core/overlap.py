@@ -16,7 +16,10 @@ MEET, APART, UNKNOWN = 0, 1, 2
 """Outcomes of a pair test."""
 
 SLACK = 1e-12
-"""Rounding allowed, relative to the numbers that are added."""
+"""Rounding allowed, relative to the size of the shape and its distance from the origin."""
+
+ROUNDING = 2e-15
+"""Rounding allowed, relative to the largest of the numbers that are added up and may cancel."""
 
 BUDGET = 4000
 """Pairs of pieces looked at before a pair is given up."""

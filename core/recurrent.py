@@ -12,7 +12,7 @@ from . import enclosure
 from .enclosure import POINT, enclosing_disc, mean_fixed_point, move_origin, shrinking_words
 from .gap import empty_search, measure_gap
 from .kernels import njit
-from .overlap import BUDGET, MEET, SLACK, STACK, UNKNOWN, join, pair_test
+from .overlap import BUDGET, MEET, ROUNDING, SLACK, STACK, UNKNOWN, join, pair_test
 from .states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
 from .tree import CAPACITY, View, empty_tree, plant
 
@@ -39,10 +39,13 @@ def decide_recurrent(linear, translation, follows, tolerance, with_gap):
         origin_x, origin_y = mean_fixed_point(linear[frame], translation[frame])
         move_origin(linear[frame], translation[frame], origin_x, origin_y, moved)
         x, y, radius = enclosing_disc(linear[frame], moved, parent, letter, product, size, limit)
-        if radius <= POINT * (abs(origin_x + x) + abs(origin_y + y)):
+        largest = abs(origin_x) + abs(origin_y)
+        for i in range(count):
+            largest = max(largest, abs(moved[i, 0]) + abs(moved[i, 1]))
+        if radius <= POINT * largest:
             state[frame], gap[frame, 0], gap[frame, 1] = CONNECTED, 0.0, 0.0
         else:
-            view = View(x, y, 0.0, radius, SLACK * max(radius, abs(x) + abs(y)))
+            view = View(x, y, 0.0, radius, SLACK * max(radius, abs(x) + abs(y)) + ROUNDING * largest)
             state[frame], low, high = decide(
                 tree, room, linear[frame], moved, follows[frame], view, tolerance, with_gap, labels[frame]
             )
@@ -50,7 +53,7 @@ def decide_recurrent(linear, translation, follows, tolerance, with_gap):
                 gap[frame, 0], gap[frame, 1] = 0.0, tolerance
             elif with_gap:
                 gap[frame, 0] = max(low / radius, SLACK) / 2 if state[frame] == DISCONNECTED else 0.0
-                gap[frame, 1] = max(high / (2 * radius), tolerance / 2, gap[frame, 0])
+                gap[frame, 1] = max(high / (2 * radius), tolerance, gap[frame, 0])
         if state[frame] == CONNECTED:
             for i in range(count):
                 labels[frame, i] = 0

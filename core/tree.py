@@ -48,6 +48,14 @@ def plant(tree, linear, start, drift):
 
 
 @njit(nogil=True, cache=True)
+def prune(tree, count):
+    """Leave only the words of one letter, of which there are `count`."""
+    for i in range(count):
+        tree.child[i] = -1
+    tree.used[0] = count
+
+
+@njit(nogil=True, cache=True)
 def set_word(tree, place, last, a, b, c, d, start_x, start_y, drift_x, drift_y):
     """Write a word without children."""
     word = tree.word

@@ -118,7 +118,7 @@ def is_done(folder: Path) -> bool:
     """Whether all kernels of these sources were compiled into a folder, on this machine and with this numba."""
     try:
         return _mark(folder).read_text() == _state()
-    except OSError:
+    except (OSError, ValueError):
         return False
 
 

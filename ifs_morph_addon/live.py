@@ -72,7 +72,7 @@ class Follower:
             return next(self._steps)
         except StopIteration:
             self._steps = None
-        except (ValueError, MemoryError):
+        except (ValueError, MemoryError, RuntimeError):
             # The panel says what is wrong with the shapes; the next change is another try.
             self.stop()
         return INTERVAL
@@ -236,6 +236,7 @@ def on_save(*_):
         owner = follower.owner
         if follower.shows_preview and owner is not None and owner.ifs_morph.locus.image is not None:
             locus_picture.put_back(owner.ifs_morph.locus.image)
+            follower.shows_preview = False
 
 
 HANDLERS = {

@@ -18,6 +18,9 @@ BAND = 65536
 COMPUTE_SHARE = 0.95
 """Share of the progress that the computing takes; the rest is coloring."""
 
+WAITING = 0.2
+"""Brightness of a picture that waits for its pixels."""
+
 _last: dict[tuple[str, bool], Locus] = {}
 """The locus computed last, by its fingerprint and whether with gaps: planning needs more of it than its picture."""
 
@@ -148,5 +151,7 @@ def writable_picture(owner):
             image.scale(len(u), len(v))
         _place(image, u, v)
         picture.inputs = ""
+        # What was scaled lies in the wrong place, and must not be saved there.
+        image.pixels.foreach_set(np.full(4 * len(u) * len(v), WAITING, dtype=np.float32))
         image.pack()
     return image, u, v

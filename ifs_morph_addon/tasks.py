@@ -48,11 +48,11 @@ class LongTask:
         if bpy.app.background:
             return self.execute(context)
         self._steps = self.work(context)
-        _running.append(self.bl_idname)
         window_manager = context.window_manager
         window_manager.progress_begin(0, 100)
         self._timer = window_manager.event_timer_add(0.01, window=context.window)
         window_manager.modal_handler_add(self)
+        _running.append(self.bl_idname)
         self._show(context, 0.0)
         return {"RUNNING_MODAL"}
 

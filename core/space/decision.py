@@ -11,7 +11,7 @@ import numpy as np
 from .. import enclosure
 from ..decision import POINT, STACK, WORK, set_whole
 from ..kernels import njit
-from ..overlap import MEET, SLACK, UNKNOWN, join, surely_one_piece
+from ..overlap import MEET, ROUNDING, SLACK, UNKNOWN, join, surely_one_piece
 from ..states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
 from .enclosure import determinant, enclosing_ball, fixed_point, mean_fixed_point, shrinking_words
 from .gap import empty_search, measure_gap
@@ -128,6 +128,11 @@ def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, first, 
             row = linear[i, 3 * axis : 3 * axis + 3]
             image = row[0] * origin[0] + row[1] * origin[1] + row[2] * origin[2]
             moved[i, axis] = start[i, axis] + image - origin[axis]
+    # The largest numbers that are added up, and may cancel.
+    reach, drift_reach = abs(origin[0]) + abs(origin[1]) + abs(origin[2]), 0.0
+    for i in range(count):
+        reach = max(reach, abs(moved[i, 0]) + abs(moved[i, 1]) + abs(moved[i, 2]))
+        drift_reach = max(drift_reach, abs(drift[i, 0]) + abs(drift[i, 1]) + abs(drift[i, 2]))
     tree = desk.tree
     plant(tree, linear, moved, drift)
     tree.used[1] = 0
@@ -138,12 +143,13 @@ def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, first, 
             for axis in range(3):
                 translation[i, axis] = moved[i, axis] + along[node] * drift[i, axis]
         x, y, z, radius = enclosing_ball(linear, translation, parent, letter, product, size, limit)
-        if radius <= POINT * (abs(origin[0] + x) + abs(origin[1] + y) + abs(origin[2] + z)):
+        largest = reach + abs(along[node]) * drift_reach
+        if radius <= POINT * largest:
             set_whole(node, 0.0, state, gap, labels)
             continue
         if tree.used[0] > CAPACITY // 2:
             plant(tree, linear, moved, drift)
-        view = View(x, y, z, along[node], radius, SLACK * max(radius, abs(x) + abs(y) + abs(z)))
+        view = View(x, y, z, along[node], radius, SLACK * max(radius, abs(x) + abs(y) + abs(z)) + ROUNDING * largest)
         state[node] = decide(desk, areas, view, tolerance, labels[node])
         if state[node] == CONNECTED:
             set_whole(node, tolerance, state, gap, labels)
@@ -151,7 +157,7 @@ def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, first, 
             points = find_points(desk, linear, translation, view)
             low, high = measure_gap(tree, view, tolerance, points, labels[node].copy(), desk.search)
             gap[node, 0] = max(low / radius, SLACK) / 2 if state[node] == DISCONNECTED else 0.0
-            gap[node, 1] = max(high / (2 * radius), tolerance / 2, gap[node, 0])
+            gap[node, 1] = max(high / (2 * radius), tolerance, gap[node, 0])
     return nodes
 
 

@@ -14,6 +14,7 @@ from ..enclosure import (
     CONTRACTIVITY_BUDGET,
     COVERED,
     NO_ATTRACTOR,
+    SURE_NORM,
     TIGHT_BUDGET,
     TIGHT_NORM,
     UNDECIDED,
@@ -145,11 +146,15 @@ def shrinking_words(linear):
     -------
     As `cover`, and the norm that the words of the cover do not exceed.
     """
-    outcome, parent, letter, product, size = cover(linear, TIGHT_NORM, TIGHT_BUDGET)
+    outcome, parent, letter, product, size = cover(linear, TIGHT_NORM, np.int64(TIGHT_BUDGET))
     if outcome != UNDECIDED:
         return outcome, parent, letter, product, size, TIGHT_NORM
-    outcome, parent, letter, product, size = cover(linear, CONTRACTIVE_NORM, CONTRACTIVITY_BUDGET)
-    return outcome, parent, letter, product, size, CONTRACTIVE_NORM
+    outcome, parent, letter, product, size = cover(linear, CONTRACTIVE_NORM, np.int64(CONTRACTIVITY_BUDGET))
+    largest = size[: linear.shape[0]].max()
+    if outcome != UNDECIDED or largest > SURE_NORM:
+        return outcome, parent, letter, product, size, CONTRACTIVE_NORM
+    outcome, parent, letter, product, size = cover(linear, largest, np.int64(linear.shape[0]))
+    return outcome, parent, letter, product, size, largest
 
 
 @njit(nogil=True, cache=True)

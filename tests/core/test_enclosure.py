@@ -116,3 +116,12 @@ def test_a_map_that_may_not_follow_itself_may_grow():
     in_turn = np.array([[0, 1], [1, 0]], dtype=bool)
     assert cover(linear, in_turn, 0.5, 1000)[0] == enclosure.COVERED
     assert cover(3 * linear, in_turn, 0.5, 1000)[0] == enclosure.NO_ATTRACTOR
+
+
+@pytest.mark.parametrize("count, scale", [(2, 0.999), (4, 0.99), (28, 0.96)])
+def test_maps_that_hardly_contract_are_words_enough(count, scale):
+    linear = np.tile([scale, 0, 0, scale], (count, 1))
+    outcome, _, letter, _, size, limit = shrinking_words(linear, every(linear))
+    assert outcome == enclosure.COVERED
+    assert (size <= limit).all()
+    assert len(letter) == count or limit < 0.95

@@ -15,7 +15,7 @@ from core.polygon import outer_polygon
 from core.shapes import SHAPES
 from core.tree import View, empty_tree, plant
 from tests.core.random_maps import random_ifs, unit_maps
-from tests.core.reference import at, cover, dense
+from tests.core.reference import at, cover, dense, linkage
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -137,6 +137,41 @@ def test_a_shape_far_away_gets_the_same_verdict(seed, exponent):
         assert here.state == there.state
     # Far away all that is known for certain must still be true.
     assert there.state != decision.DISCONNECTED or here.gap[1] > 0
+
+
+@pytest.mark.parametrize("ratio, place", [(-1.0, 1 / 2), (-2.0, 1 / 3), (-3.0, 1 / 4)])
+def test_a_shape_that_collapses_on_the_way_is_one_point_there(ratio, place):
+    random = np.random.default_rng(1)
+    linear, follows = np.tile([0.5, 0, 0, 0.5], (3, 1)), np.ones((3, 3), dtype=bool)
+    for _ in range(40):
+        start = random.normal(size=(3, 2))
+        start -= start.mean(axis=0)
+        steps = column_steps(linear, start, (ratio - 1) * start, np.array([-1, place, 2, 2]), follows, 1 / 300, True)
+        assert finished(steps)[0][1] == decision.CONNECTED
+
+
+def test_many_maps_are_decided():
+    side = 16
+    squares = [[[1 / side, 0, x / side], [0, 1 / side, y / side]] for x in range(side) for y in range(side)]
+    assert connectedness(IFS(squares)).state == decision.CONNECTED
+    apart = np.array(squares)
+    apart[:, :, :2] *= 0.98
+    assert connectedness(IFS(apart)).state == decision.DISCONNECTED
+
+
+def test_a_ring_with_a_speck_has_the_gap_of_the_speck():
+    """The ring's own maps meet at the tolerance only, which is all that is known of their gaps."""
+    angles = 2 * np.pi * np.arange(16) / 16
+    scale, tolerance = 0.1619, 0.01363
+    ring = [[[scale, 0, np.cos(angle)], [0, scale, np.sin(angle)]] for angle in angles]
+    center = np.array([1 + scale, 0.0])
+    speck = [[[1e-4, 0, center[0]], [0, 1e-4, center[1]]]]
+    ifs = IFS(np.array(ring + speck))
+    points, letters, spacing = dense(ifs.maps, 6000)
+    gap, diameter = linkage(points, letters, ifs.count), 2 * ifs.enclosing_disc[1]
+    low, high = connectedness(ifs, tolerance).gap
+    assert low * diameter <= gap * (1 + 1e-9)
+    assert gap - 2 * spacing <= high * diameter
 
 
 @given(seeds, st.sampled_from([1 / 30, 1 / 300, 1e-6]))
