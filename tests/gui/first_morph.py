@@ -76,6 +76,8 @@ def steps():
     picture("2_added")
 
     morph().ifs_morph.path.frame_end = 120
+    while sys.modules[f"{MODULE}.ifs_morph_addon.preparation"].is_running():
+        yield
     with in_viewport():
         bpy.ops.ifs_morph.compute_locus("INVOKE_DEFAULT")
     yield
