@@ -135,7 +135,7 @@ def find_polygon(desk, linear, seen, view):
         x, y = center(desk.tree, i, view)
         desk.unit[i, 0], desk.unit[i, 1] = x - view.x, y - view.y
     tolerance = POLYGON_PRECISION * view.radius
-    shrink_polygon(normal, sector, share, desk.unit, view.radius, tolerance, desk.reach, desk.corners)
+    shrink_polygon(normal, sector, share, desk.unit, view.radius, view.slack, tolerance, desk.reach, desk.corners)
 
 
 @njit(nogil=True, cache=True)

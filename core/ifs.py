@@ -18,6 +18,9 @@ WEIGHT_FLOOR = 0.01
 
 BOUNDS_DIRECTIONS = 64
 
+ALMOST_A_POINT = 1e-9
+"""Radius of an attractor, relative to its distance from the origin, below which its bounds are those of its disc."""
+
 
 class IFSError(ValueError):
     """Something a person gave is not an IFS that can be used; the message says what, where and what to do."""
@@ -208,8 +211,9 @@ class IFS:
             If there is no attractor.
         """
         center, radius = self.enclosing_disc
-        if radius == 0:
-            return (*center, *center)
+        if radius <= ALMOST_A_POINT * np.abs(center).max():
+            # The polygon would be made of rounding errors, which its steps may enlarge.
+            return (*(center - radius).tolist(), *(center + radius).tolist())
         translation = self.translation + self.linear @ center - center
         linear = np.ascontiguousarray(self.linear).reshape(-1, 4)
         if self.is_recurrent:

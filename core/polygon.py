@@ -15,6 +15,9 @@ from .tree import A, B, C, D
 STEPS = 100
 """Of the polygon's iteration at most; it gains a constant factor at each."""
 
+ROUNDING = 1e-14
+"""Of a reach, relative to the radius."""
+
 SMALL = 1e-300
 """A squared length below this is none."""
 
@@ -61,7 +64,7 @@ def directions_seen(linear, directions):
 
 
 @njit(nogil=True, cache=True)
-def shrink_polygon(normal, sector, share, translation, radius, tolerance, reach, corners):
+def shrink_polygon(normal, sector, share, translation, radius, rounding, tolerance, reach, corners):
     """Write the reaches of an attractor, and the corners between them.
 
     Starts at the disc about the origin and applies ``K <- K n outer(U w_i K)``; it is an enclosure at every step.
@@ -73,6 +76,8 @@ def shrink_polygon(normal, sector, share, translation, radius, tolerance, reach,
     translation : (N, 2)
     radius : float
         Of a disc about the origin that holds the attractor.
+    rounding : float
+        Added to a reach at each step, times what it is made of: maps may enlarge an error before they shrink it.
     tolerance : float
         Stop when no reach changes by more than this.
     reach : (directions,)
@@ -91,8 +96,8 @@ def shrink_polygon(normal, sector, share, translation, radius, tolerance, reach,
                 m = sector[i, k]
                 n = m + 1 if m + 1 < directions else 0
                 offset = translation[i, 0] * normal[k, 0] + translation[i, 1] * normal[k, 1]
-                furthest = max(furthest, share[i, k, 0] * reach[m] + share[i, k, 1] * reach[n] + offset)
-            furthest += 1e-14 * radius
+                s, t = share[i, k, 0], share[i, k, 1]
+                furthest = max(furthest, s * reach[m] + t * reach[n] + offset + rounding * (1 + s + t))
             if furthest < reach[k]:
                 change = max(change, reach[k] - furthest)
                 reach[k] = furthest
@@ -110,7 +115,7 @@ def outer_polygon(linear, translation, radius, directions, tolerance):
     """Reaches (directions,) and corners (directions, 2) of one attractor; arguments as above."""
     reach, corners = np.empty(directions), np.empty((directions, 2))
     normal, sector, share = directions_seen(linear, directions)
-    shrink_polygon(normal, sector, share, translation, radius, tolerance, reach, corners)
+    shrink_polygon(normal, sector, share, translation, radius, ROUNDING * radius, tolerance, reach, corners)
     return reach, corners
 
 
@@ -127,7 +132,7 @@ def recurrent_reach(linear, translation, follows, radius, directions, tolerance)
     """
     normal, sector, share = directions_seen(linear, directions)
     next_sector = (sector + 1) % directions
-    offset = translation @ normal.T + 1e-14 * radius
+    offset = translation @ normal.T + ROUNDING * radius * (1 + share.sum(axis=-1))
     reach = np.full((len(linear), directions), float(radius))
     for _ in range(STEPS):
         inside = np.where(follows[:, :, None], reach, -np.inf).max(axis=1)

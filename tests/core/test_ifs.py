@@ -224,6 +224,11 @@ def assert_encloses(ifs):
     assert (points <= np.array([x1, y1]) + slack).all()
 
 
+def test_a_map_that_enlarges_before_it_shrinks_keeps_its_bounds():
+    linear = [[3.66931481, -24.37144164], [0.56450997, -3.74945256]]
+    assert_encloses(IFS([np.column_stack([linear, [-0.63111373, -1.26222745]])]))
+
+
 @given(systems())
 @settings(max_examples=60)
 def test_disc_and_bounds_hold_the_attractor(ifs):
