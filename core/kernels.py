@@ -120,8 +120,9 @@ def _imported(module: str) -> frozenset[str]:
     text = _source(module).decode("utf-8")
     names = set()
     for dots, name, imported in re.findall(r"^from (\.+)([\w.]*) import ([\w, ]*)", text, re.MULTILINE):
-        package = module.split(".")[: -len(dots)]
-        names.update(".".join([*package, part]) for part in ([name] if name else imported.split(", ")))
+        place = [*module.split(".")[: -len(dots)], *filter(None, name.split("."))]
+        names.add(".".join(place))
+        names.update(".".join([*place, part.split(" as ")[0]]) for part in imported.split(", "))
     return frozenset({module}).union(*(_imported(name) for name in names if _path(name).exists()))
 
 

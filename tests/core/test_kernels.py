@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib.util import resolve_name
 from pathlib import Path
 
 import pytest
@@ -108,14 +109,25 @@ def test_the_environment_chooses_before_the_program_and_that_before_the_sources(
     assert kernels.folder() == CORE / "__pycache__"
 
 
-@pytest.mark.parametrize("module", [path.stem for path in CORE.glob("*.py") if "@njit" in path.read_text()])
+def with_kernels():
+    paths = [path for path in CORE.rglob("*.py") if "@njit" in path.read_text()]
+    return [".".join(path.relative_to(CORE).with_suffix("").parts) for path in paths]
+
+
+@pytest.mark.parametrize("module", with_kernels())
 def test_a_fingerprint_covers_all_that_a_module_imports(module):
     seen, left = set(), {module}
     while left:
         name = left.pop()
         seen.add(name)
-        for node in ast.parse((CORE / f"{name}.py").read_text()).body:
-            if isinstance(node, ast.ImportFrom) and node.level == 1:
-                names = {node.module} if node.module else {alias.name for alias in node.names}
-                left |= {name for name in names if (CORE / f"{name}.py").exists()} - seen
+        for node in ast.parse(source(name).read_text()).body:
+            if isinstance(node, ast.ImportFrom) and node.level > 0:
+                place = resolve_name("." * node.level + (node.module or ""), f"core.{name}".rpartition(".")[0])
+                names = [place, *(f"{place}.{alias.name}" for alias in node.names)]
+                left |= {each.removeprefix("core.") for each in names if source(each.removeprefix("core.")).exists()}
+        left -= seen
     assert kernels._imported(module) == seen
+
+
+def source(module):
+    return CORE.joinpath(*module.split(".")).with_suffix(".py")
