@@ -122,7 +122,7 @@ def _imported(module: str) -> frozenset[str]:
     for dots, name, imported in re.findall(r"^from (\.+)([\w.]*) import ([\w, ]*)", text, re.MULTILINE):
         place = [*module.split(".")[: -len(dots)], *filter(None, name.split("."))]
         names.add(".".join(place))
-        names.update(".".join([*place, part.split(" as ")[0]]) for part in imported.split(", "))
+        names.update(".".join([*place, part.split(" as ")[0]]) for part in imported.split(", ") if part)
     return frozenset({module}).union(*(_imported(name) for name in names if _path(name).exists()))
 
 
