@@ -1,14 +1,18 @@
-"""Decides attractors by the kernels for the plane or those for space, whichever their maps act on."""
+"""Decides attractors by the kernels for the plane, for recurrent shapes or for space, whichever their maps ask for."""
 
 from __future__ import annotations
 
 from collections.abc import Generator
+from types import ModuleType
 
 import numpy as np
 
 from . import decision
+from .recurrent import decide_recurrent
 from .space import decision as space_decision
 from .states import CONNECTED
+
+Decided = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def column_steps(
@@ -19,25 +23,76 @@ def column_steps(
     follows: np.ndarray,
     tolerance: float,
     with_gap: bool,
-) -> Generator[None, None, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """States, gaps and labels of attractors that share their linear parts: see `decision.column_steps`.
+) -> Generator[None, None, Decided]:
+    """States of attractors that share their linear parts, as those of one u do, in steps of a few milliseconds.
 
-    In space linear parts are (N, 9), translations (N, 3), and all letters follow all.
+    Parameters
+    ----------
+    linear : (N, 4), or (N, 9) in space
+    start, drift : (N, 2), or (N, 3)
+    along : (V,)
+        The translations of attractor k are ``start + along[k] * drift``.
+    follows : (N, N) bool
+        See `IFS.follows`; in space all letters follow all.
+    tolerance : float
+        Relative to the enclosing diameter.
+    with_gap : bool
+        Whether to measure the gaps.
+
+    Returns
+    -------
+    state : (V,) uint8
+    gap : (V, 2)
+        Brackets relative to the enclosing diameter; NaN where there is no attractor or the gap was not asked for.
+    labels : (V, N) int64
+        Components of attractorlets that are known to meet.
     """
-    if start.shape[-1] == 2:
-        return decision.column_steps(linear, start, drift, along, follows, tolerance, with_gap)
-    return space_decision.column_steps(linear, start, drift, along, tolerance, with_gap)
+    nodes, count = len(along), len(linear)
+    state, gap, labels = np.empty(nodes, np.uint8), np.empty((nodes, 2)), np.empty((nodes, count), np.int64)
+    if not follows.all():
+        for node in range(nodes):
+            translation = start + along[node] * drift
+            one = decide_frames(linear[None], translation[None], follows[None], tolerance, with_gap)
+            state[node], gap[node], labels[node] = (each[0] for each in one)
+            yield
+        return state, gap, labels
+    kernels = _kernels(start)
+    desk, done = kernels.empty_desk(count), 0
+    while done < nodes:
+        done = kernels.decide_drift(
+            desk, linear, start, drift, along, float(tolerance), bool(with_gap), done, state, gap, labels
+        )
+        yield
+    return state, gap, labels
 
 
 def decide_frames(
     linear: np.ndarray, translation: np.ndarray, follows: np.ndarray, tolerance: float, with_gap: bool
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """States, gaps and labels of the attractors of any maps: see `decision.decide_frames`."""
-    if translation.shape[-1] == 2:
-        return decision.decide_frames(linear, translation, follows, tolerance, with_gap)
-    return space_decision.decide_frames(linear, translation, tolerance, with_gap)
+) -> Decided:
+    """States of attractors of any maps, such as the frames of a path.
+
+    Parameters
+    ----------
+    linear : (F, N, 4), or (F, N, 9) in space
+    translation : (F, N, 2), or (F, N, 3)
+    follows : (F, N, N) bool
+    tolerance, with_gap
+        As above.
+
+    Returns
+    -------
+    As `column_steps`.
+    """
+    # Two kernels, for few who use the one ever need the other, and compiling takes its time.
+    if not follows.all():
+        return decide_recurrent(linear, translation, follows, float(tolerance), bool(with_gap))
+    return _kernels(translation).decide_each(linear, translation, float(tolerance), bool(with_gap))
 
 
 def are_connected(linear: np.ndarray, translation: np.ndarray, follows: np.ndarray, tolerance: float) -> np.ndarray:
     """Which of some attractors (F,) are connected at the tolerance; arguments as in `decide_frames`."""
     return decide_frames(linear, translation, follows, tolerance, False)[0] == CONNECTED
+
+
+def _kernels(translation: np.ndarray) -> ModuleType:
+    return decision if translation.shape[-1] == 2 else space_decision

@@ -8,18 +8,16 @@ from __future__ import annotations
 
 import math
 from collections import namedtuple
-from collections.abc import Generator
 
 import numpy as np
 
 from . import enclosure
 from .enclosure import POINT, enclosing_disc, mean_fixed_point, move_origin, shrinking_words
 from .gap import empty_search, measure_gap
-from .heap import sift_down, sift_up
+from .heap import ascending
 from .kernels import njit
 from .overlap import BUDGET, MEET, ROUNDING, SLACK, STACK, UNKNOWN, join, pair_test, surely_one_piece
 from .polygon import directions_seen, shrink_polygon
-from .recurrent import decide_recurrent
 from .states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
 from .tree import CAPACITY, NORM, View, center, empty_tree, plant, prune
 
@@ -40,8 +38,10 @@ DIRECTIONS = 16
 POLYGON_PRECISION = 1e-3
 """Of the outer polygon: its sides, and the change at which it is good enough, relative to the disc's radius."""
 
-Desk = namedtuple("Desk", "tree search first second key left right between order nearest reach corners unit points")
-"""Work space, made once for many attractors."""
+Desk = namedtuple(
+    "Desk", "tree follows search first second key left right between order nearest reach corners unit points"
+)
+"""Work space, made once for many attractors; every letter may come after every other."""
 
 
 @njit(nogil=True, cache=True)
@@ -50,6 +50,7 @@ def empty_desk(count):
     pairs = max(1, count * (count - 1) // 2)
     return Desk(
         empty_tree(max(CAPACITY, min(count, MANY) * WORDS_A_MAP)),
+        np.ones((count, count), np.bool_),
         empty_search(count),
         np.empty(STACK, np.int32),
         np.empty(STACK, np.int32),
@@ -67,7 +68,7 @@ def empty_desk(count):
 
 
 @njit(nogil=True, cache=True)
-def decide(desk, linear, follows, areas, seen, view, tolerance, labels):
+def decide(desk, linear, areas, seen, view, tolerance, labels):
     """State of one attractor, and in `labels` (N,) the component that each attractorlet is known to belong to.
 
     An attractor is connected if and only if the overlap graph of its attractorlets is (Hata 1985; Burch & Hart 1997,
@@ -75,7 +76,7 @@ def decide(desk, linear, follows, areas, seen, view, tolerance, labels):
     """
     count = linear.shape[0]
     tree = desk.tree
-    left, right, between, order, nearest = desk.left, desk.right, desk.between, desk.order, desk.nearest
+    left, right, between, nearest = desk.left, desk.right, desk.between, desk.nearest
     known = 0
     for i in range(count):
         labels[i] = i
@@ -85,14 +86,9 @@ def decide(desk, linear, follows, areas, seen, view, tolerance, labels):
             apart = math.sqrt((one_x - other_x) * (one_x - other_x) + (one_y - other_y) * (one_y - other_y))
             apart -= view.radius * (tree.word[i, NORM] + tree.word[j, NORM])
             if apart <= view.slack:
-                between[known], left[known], right[known], order[known] = apart, i, j, known
-                sift_up(order, between, known)
+                between[known], left[known], right[known] = apart, i, j
                 known += 1
-    # Nearest first.
-    for length in range(known - 1, -1, -1):
-        nearest[known - 1 - length] = order[0]
-        order[0] = order[length]
-        sift_down(order, between, length)
+    ascending(between, known, desk.order, nearest)
     begun = tree.used[1]
     for stage in range(2):
         corners = desk.corners[: stage * DIRECTIONS]
@@ -109,7 +105,7 @@ def decide(desk, linear, follows, areas, seen, view, tolerance, labels):
             if tree.used[1] - begun > MOST_WORK:
                 budget = 0
             outcome = pair_test(
-                tree, follows, view, i, j, tolerance, corners, budget, desk.first, desk.second, desk.key
+                tree, desk.follows, view, i, j, tolerance, corners, budget, desk.first, desk.second, desk.key
             )
             if outcome == MEET:
                 join(labels, i, j)
@@ -149,10 +145,8 @@ def find_points(desk, linear):
 
 
 @njit(nogil=True, cache=True)
-def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap, first, state, gap, labels):
-    """Decide some attractors that share their linear parts, from the `first` on; arguments as in `column_steps`.
-
-    Every letter must be allowed to come after every other.
+def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, first, state, gap, labels):
+    """Decide some attractors that share their linear parts, from the `first` on; see `deciding.column_steps`.
 
     Stops after `WORK`, so that a caller can look up. `state` (V,), `gap` (V, 2) and `labels` (V, N) are written.
 
@@ -166,7 +160,7 @@ def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap
         gap[node, 0] = gap[node, 1] = np.nan
         for i in range(count):
             labels[node, i] = i
-    outcome, parent, letter, product, size, limit = shrinking_words(linear, follows)
+    outcome, parent, letter, product, size, limit = shrinking_words(linear, desk.follows)
     if outcome != enclosure.COVERED:
         for node in range(first, nodes):
             state[node] = NO_ATTRACTOR if outcome == enclosure.NO_ATTRACTOR else UNDECIDED
@@ -206,7 +200,7 @@ def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap
             set_whole(node, 0.0, state, gap, labels)
             continue
         view = View(x, y, along[node], radius, SLACK * max(radius, abs(x) + abs(y)) + ROUNDING * largest)
-        state[node] = decide(desk, linear, follows, areas, seen, view, tolerance, labels[node])
+        state[node] = decide(desk, linear, areas, seen, view, tolerance, labels[node])
         if state[node] == CONNECTED:
             set_whole(node, tolerance, state, gap, labels)
         elif with_gap:
@@ -214,7 +208,7 @@ def decide_drift(desk, linear, start, drift, along, follows, tolerance, with_gap
             find_points(desk, linear)
             for i in range(count):
                 known[i] = labels[node, i]
-            low, high = measure_gap(tree, follows, view, tolerance, desk.corners, desk.points, known, desk.search)
+            low, high = measure_gap(tree, desk.follows, view, tolerance, desk.corners, desk.points, known, desk.search)
             gap[node, 0] = max(low / radius, SLACK) / 2 if state[node] == DISCONNECTED else 0.0
             gap[node, 1] = max(high / (2 * radius), tolerance, gap[node, 0])
     return nodes
@@ -228,74 +222,9 @@ def set_whole(node, widest, state, gap, labels):
         labels[node, i] = 0
 
 
-def column_steps(
-    linear: np.ndarray,
-    start: np.ndarray,
-    drift: np.ndarray,
-    along: np.ndarray,
-    follows: np.ndarray,
-    tolerance: float,
-    with_gap: bool,
-) -> Generator[None, None, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """States of attractors that share their linear parts, as those of one u do, in steps of a few milliseconds.
-
-    Parameters
-    ----------
-    linear : (N, 4)
-    start, drift : (N, 2)
-    along : (V,)
-        The translations of attractor k are ``start + along[k] * drift``.
-    follows : (N, N) bool
-        See `IFS.follows`.
-    tolerance : float
-        Relative to the enclosing diameter.
-    with_gap : bool
-        Whether to measure the gaps.
-
-    Returns
-    -------
-    state : (V,) uint8
-    gap : (V, 2)
-        Brackets relative to the enclosing diameter; NaN where there is no attractor or the gap was not asked for.
-    labels : (V, N) int64
-        Components of attractorlets that are known to meet.
-    """
-    nodes, count = len(along), len(linear)
-    if not follows.all():
-        translation = start + along[:, None, None] * drift
-        found = []
-        for node in range(nodes):
-            found.append(
-                decide_recurrent(linear[None], translation[node : node + 1], follows[None], tolerance, with_gap)
-            )
-            yield
-        return tuple(np.concatenate(each) for each in zip(*found, strict=True))
-    state, gap, labels = np.empty(nodes, np.uint8), np.empty((nodes, 2)), np.empty((nodes, count), np.int64)
-    family = linear, start, drift, along, follows, float(tolerance), bool(with_gap)
-    desk, done = empty_desk(count), 0
-    while done < nodes:
-        done = decide_drift(desk, *family, done, state, gap, labels)
-        yield
-    return state, gap, labels
-
-
-def decide_frames(
-    linear: np.ndarray, translation: np.ndarray, follows: np.ndarray, tolerance: float, with_gap: bool
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """States of attractors of any maps (F, N, 4), (F, N, 2), with follows (F, N, N), such as the frames of a path.
-
-    Returns
-    -------
-    As `column_steps`.
-    """
-    # Two kernels, for few who use the one ever need the other, and compiling takes its time.
-    decide = decide_each if follows.all() else decide_recurrent
-    return decide(linear, translation, follows, float(tolerance), bool(with_gap))
-
-
 @njit(nogil=True, cache=True)
-def decide_each(linear, translation, follows, tolerance, with_gap):
-    """`decide_frames` where every letter may come after every other."""
+def decide_each(linear, translation, tolerance, with_gap):
+    """Decide attractors of any maps; see `deciding.decide_frames`."""
     frames, count = linear.shape[0], linear.shape[1]
     state, gap = np.empty(frames, np.uint8), np.empty((frames, 2))
     labels = np.empty((frames, count), np.int64)
@@ -309,7 +238,6 @@ def decide_each(linear, translation, follows, tolerance, with_gap):
             translation[k],
             drift,
             along,
-            follows[k],
             tolerance,
             with_gap,
             zero,

@@ -27,3 +27,15 @@ def sift_down(order, key, length):
             return
         order[place], order[least] = order[least], order[place]
         place = least
+
+
+@njit(nogil=True, cache=True)
+def ascending(key, count, order, ranked):
+    """Write into `ranked` the indices of the first `count` keys, least first; `order` is work space."""
+    for k in range(count):
+        order[k] = k
+        sift_up(order, key, k)
+    for length in range(count - 1, -1, -1):
+        ranked[count - 1 - length] = order[0]
+        order[0] = order[length]
+        sift_down(order, key, length)

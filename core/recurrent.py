@@ -22,7 +22,7 @@ MOST_VERTICES = 48
 
 @njit(nogil=True, cache=True)
 def decide_recurrent(linear, translation, follows, tolerance, with_gap):
-    """States of the attractors of recurrent IFSs; arguments and returns as `decision.decide_frames`."""
+    """States of the attractors of recurrent IFSs; arguments and returns as `deciding.decide_frames`."""
     frames, count = linear.shape[0], linear.shape[1]
     state, gap = np.empty(frames, np.uint8), np.full((frames, 2), np.nan)
     labels = np.empty((frames, count), np.int64)

@@ -164,7 +164,7 @@ def _score(
     ends = np.empty((maps, 2, 3))
     linear, translation = np.empty((maps, 4)), np.empty((maps, 2))
     desk, drift, along = empty_desk(maps), np.zeros((maps, 2)), np.zeros(1)
-    follows, no, first = np.ones((maps, maps), np.bool_), np.bool_(False), np.int64(0)
+    no, first = np.bool_(False), np.int64(0)
     state, gap, labels = np.empty(1, np.uint8), np.empty((1, 2)), np.empty((1, maps), np.int64)
     work = 0
     for candidate in range(count):
@@ -205,7 +205,7 @@ def _score(
             while low < high and level < LEVELS.shape[0]:
                 _linear_parts(start, turn, sign, ends, at, LEVELS[level], linear)
                 work += 1
-                decide_drift(desk, linear, translation, drift, along, follows, tolerance, no, first, state, gap, labels)
+                decide_drift(desk, linear, translation, drift, along, tolerance, no, first, state, gap, labels)
                 if state[0] == CONNECTED:
                     high = level
                 else:

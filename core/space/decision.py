@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import namedtuple
-from collections.abc import Generator
 
 import numpy as np
 
 from .. import enclosure
 from ..decision import POINT, STACK, WORK, set_whole
+from ..heap import ascending
 from ..kernels import njit
 from ..overlap import MEET, ROUNDING, SLACK, UNKNOWN, join, surely_one_piece
 from ..states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
@@ -21,7 +21,7 @@ from .tree import CAPACITY, NORM, View, center, empty_tree, plant
 EASY_BUDGET = 256
 """Pairs of pieces looked at in the first stage; `overlap.BUDGET` in the second, if need be."""
 
-Desk = namedtuple("Desk", "tree search first second key left right between points")
+Desk = namedtuple("Desk", "tree search first second key left right between order nearest points")
 """Work space, made once for many attractors."""
 
 
@@ -38,6 +38,8 @@ def empty_desk(count):
         np.empty(pairs, np.int64),
         np.empty(pairs, np.int64),
         np.empty(pairs),
+        np.empty(pairs, np.int64),
+        np.empty(pairs, np.int64),
         np.empty((count, 3)),
     )
 
@@ -49,7 +51,7 @@ def decide(desk, areas, view, tolerance, labels):
     The area certificate holds in any number of dimensions: `areas` (N,) are the volumes of the maps here.
     """
     tree, count = desk.tree, labels.shape[0]
-    left, right, between = desk.left, desk.right, desk.between
+    left, right, between, nearest = desk.left, desk.right, desk.between, desk.nearest
     known = 0
     for i in range(count):
         labels[i] = i
@@ -58,18 +60,14 @@ def decide(desk, areas, view, tolerance, labels):
             p, q, r = center(tree, j, view)
             apart = math.sqrt((x - p) * (x - p) + (y - q) * (y - q) + (z - r) * (z - r))
             apart -= view.radius * (tree.word[i, NORM] + tree.word[j, NORM])
-            if apart > view.slack:
-                continue
-            place = known
-            while place > 0 and between[place - 1] > apart:
-                between[place], left[place], right[place] = between[place - 1], left[place - 1], right[place - 1]
-                place -= 1
-            between[place], left[place], right[place] = apart, i, j
-            known += 1
+            if apart <= view.slack:
+                between[known], left[known], right[known] = apart, i, j
+                known += 1
+    ascending(between, known, desk.order, nearest)
     for budget in (EASY_BUDGET, BUDGET):
         still_open = 0
-        for pair in range(known):
-            i, j = left[pair], right[pair]
+        for place in range(known):
+            i, j = left[nearest[place]], right[nearest[place]]
             if labels[i] == labels[j]:
                 continue
             outcome = pair_test(tree, count, view, i, j, tolerance, budget, desk.first, desk.second, desk.key)
@@ -78,20 +76,20 @@ def decide(desk, areas, view, tolerance, labels):
                 if surely_one_piece(labels, areas):
                     return CONNECTED
             elif outcome == UNKNOWN:
-                left[still_open], right[still_open] = i, j
+                nearest[still_open] = nearest[place]
                 still_open += 1
         known = still_open
         if known == 0:
             return DISCONNECTED
-    for pair in range(known):
-        if labels[left[pair]] != labels[right[pair]]:
+    for place in range(known):
+        if labels[left[nearest[place]]] != labels[right[nearest[place]]]:
             return UNDECIDED
     return DISCONNECTED
 
 
 @njit(nogil=True, cache=True)
 def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, first, state, gap, labels):
-    """Decide some attractors that share their linear parts, from the `first` on; arguments as in `column_steps`.
+    """Decide some attractors that share their linear parts, from the `first` on; see `deciding.column_steps`.
 
     Stops after `WORK`, so that a caller can look up. `state` (V,), `gap` (V, 2) and `labels` (V, N) are written.
 
@@ -173,47 +171,9 @@ def find_points(desk, linear, translation, view):
     return desk.points[:found]
 
 
-def column_steps(
-    linear: np.ndarray, start: np.ndarray, drift: np.ndarray, along: np.ndarray, tolerance: float, with_gap: bool
-) -> Generator[None, None, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """States of attractors that share their linear parts, as those of one u do, in steps of a few milliseconds.
-
-    Parameters
-    ----------
-    linear : (N, 9)
-    start, drift : (N, 3)
-    along : (V,)
-        The translations of attractor k are ``start + along[k] * drift``.
-    tolerance : float
-        Relative to the enclosing diameter.
-    with_gap : bool
-        Whether to measure the gaps.
-
-    Returns
-    -------
-    As `core.decision.column_steps`.
-    """
-    nodes, count = len(along), len(linear)
-    state, gap, labels = np.empty(nodes, np.uint8), np.empty((nodes, 2)), np.empty((nodes, count), np.int64)
-    desk, done = empty_desk(count), 0
-    while done < nodes:
-        done = decide_drift(
-            desk, linear, start, drift, along, float(tolerance), bool(with_gap), done, state, gap, labels
-        )
-        yield
-    return state, gap, labels
-
-
-def decide_frames(
-    linear: np.ndarray, translation: np.ndarray, tolerance: float, with_gap: bool
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """States of attractors of any maps (F, N, 9), (F, N, 3), such as the frames of a path; as `column_steps`."""
-    return decide_each(linear, translation, float(tolerance), bool(with_gap))
-
-
 @njit(nogil=True, cache=True)
 def decide_each(linear, translation, tolerance, with_gap):
-    """`decide_frames` as a kernel."""
+    """Decide attractors of any maps; see `deciding.decide_frames`."""
     frames, count = linear.shape[0], linear.shape[1]
     state, gap = np.empty(frames, np.uint8), np.empty((frames, 2))
     labels = np.empty((frames, count), np.int64)

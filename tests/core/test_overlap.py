@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from core import decision, overlap
 from core.connectedness import connectedness
-from core.decision import column_steps, decide_frames
+from core.deciding import column_steps, decide_frames
 from core.heap import sift_down, sift_up
 from core.ifs import IFS
 from core.overlap import APART, MEET, UNKNOWN, pair_test, surely_one_piece
