@@ -84,7 +84,9 @@ def measure_gap(tree, view, tolerance, points, labels, search):
         if child < 0:
             join(labels, i, j)
             components -= 1
-            low, high = max(low, bound - view.slack), max(high, most)
+            # The order of the search is by bounds and, a little, by sizes.
+            low = max(low, bound - view.slack - 2 * TIE * view.radius)
+            high = max(high, most + view.slack)
             continue
         for k in range(child, child + count):
             # The first part takes the place of the whole.
