@@ -4,4 +4,4 @@ Each scene is a module with a `TITLE` and a function `build`. `render` makes the
 the stills that stand beside the scripts, and `figures` draws the figures of the paper.
 """
 
-SCENES = ("turned_gasket_to_gasket", "terdragon_to_gasket", "fern_to_leaf")
+SCENES = ("turned_gasket_to_gasket", "terdragon_to_gasket", "fern_to_leaf", "tree_to_flowsnake")

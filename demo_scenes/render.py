@@ -8,8 +8,9 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 
@@ -33,18 +34,19 @@ def main() -> None:
     try:
         import bpy
 
-        owner = _step("building the scene", lambda: scene_script.build(arguments.frames, arguments.size))
+        log = output / "blender.log"
+        owner = _step("building the scene", partial(scene_script.build, arguments.frames, arguments.size), log)
         owner.ifs_morph.locus.resolution = arguments.locus
         owner.ifs_morph.path.frame_end = arguments.frames
-        _step(f"computing the locus, {arguments.locus} nodes a side", bpy.ops.ifs_morph.compute_locus)
-        _step("planning and keying the path", bpy.ops.ifs_morph.plan_path)
+        for button in scene_script.BUTTONS:
+            _step(f"pressing {button.replace('_', ' ').title()}", partial(stage.press, button), log)
         stage.frame(owner)
         fcurves = import_module(f"{addon.__name__}.ifs_morph_addon.fcurves")
         path = fcurves.sample_path(owner, range(1, arguments.frames + 1))
         draw_locus(owner.ifs_morph.locus.image, path, fcurves.sample_path(owner, fcurves.key_frames(owner)), output)
         bpy.ops.wm.save_as_mainfile(filepath=str(output / f"{arguments.scene}.blend"), compress=True)
-        pictures = _render(bpy.context.scene, output / "frames")
-        _step("writing the animation and the contact sheet", lambda: _collect(pictures, path, output))
+        pictures = _render(bpy.context.scene, output / "frames", log)
+        _step("writing the animation and the contact sheet", partial(_collect, pictures, path, output), log)
         print(f"\n{owner.ifs_morph.path.report}\n")
     finally:
         stage.stop()
@@ -70,16 +72,17 @@ def _arguments() -> argparse.Namespace:
     return arguments
 
 
-def _step(what: str, work):
+def _step(what: str, work: Callable, log: Path):
     print(f"- {what} ...", end="", flush=True)
     began = time.perf_counter()
-    result = work()
+    with _quiet(log):
+        result = work()
     print(f" {time.perf_counter() - began:.1f} s", flush=True)
     return result
 
 
-def _render(scene, folder: Path) -> list[Path]:
-    """Render every frame of the scene, showing how far it is; Blender's own log is kept beside the frames."""
+def _render(scene, folder: Path, log: Path) -> list[Path]:
+    """Render every frame of the scene, showing how far it is."""
     import bpy
 
     scene.render.image_settings.file_format = "PNG"
@@ -94,7 +97,7 @@ def _render(scene, folder: Path) -> list[Path]:
 
     bpy.app.handlers.render_write.append(show)
     try:
-        with _quiet(folder.parent / "blender.log"):
+        with _quiet(log):
             bpy.ops.render.render(animation=True)
     finally:
         bpy.app.handlers.render_write.remove(show)
@@ -106,14 +109,15 @@ def _render(scene, folder: Path) -> list[Path]:
 
 @contextmanager
 def _quiet(log: Path) -> Iterator[None]:
-    """Send what Blender prints to a file: its C code writes to the descriptor, behind Python's back."""
+    """Add what Blender prints to a file: its C code writes to the descriptor, behind Python's back."""
     sys.stdout.flush()
     kept = os.dup(1)
-    with log.open("wb") as file:
+    with log.open("ab") as file:
         os.dup2(file.fileno(), 1)
     try:
         yield
     finally:
+        sys.stdout.flush()
         os.dup2(kept, 1)
         os.close(kept)
 

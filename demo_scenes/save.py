@@ -44,10 +44,11 @@ def _save(name: str) -> list[Image.Image]:
     """Save one scene and its still; returns its pictures for the README."""
     import bpy
 
-    owner = import_module(f"{__package__}.{name}").build(FRAMES, SIZE)
+    scene_script = import_module(f"{__package__}.{name}")
+    owner = scene_script.build(FRAMES, SIZE)
     owner.ifs_morph.path.frame_end = FRAMES
-    bpy.ops.ifs_morph.compute_locus()
-    bpy.ops.ifs_morph.plan_path()
+    for button in scene_script.BUTTONS:
+        stage.press(button)
     stage.frame(owner)
     scene = bpy.context.scene
     pictures = [_render(scene, frame) for frame in (*ROW, STILL)]

@@ -7,10 +7,16 @@ import importlib
 import os
 from pathlib import Path
 
+import numpy as np
+
 ROOT = Path(__file__).parents[1]
 PACKAGE = "bl_ext.system.ifs_morph"
 FPS = 30
 BACKGROUND = 0.004, 0.005, 0.01
+
+BY_LOCUS = ("compute_locus", "plan_path")
+BY_MATCHING = ("morph", "compute_locus")
+"""The extension's buttons that a scene has pressed: paired map by map as in the paper, or matched."""
 
 
 def start():
@@ -77,6 +83,14 @@ def color_world(color: tuple[float, float, float]) -> None:
     world.node_tree.nodes["Background"].inputs["Color"].default_value = *color, 1.0
 
 
+def place(shape, scale: float, offset: tuple[float, float]) -> None:
+    """Make a whole shape of an object larger or smaller, and then move it."""
+    for item in shape.maps:
+        matrix = np.array(item.matrix)
+        matrix[:, 2] = scale * matrix[:, 2] + offset - matrix[:, :2] @ offset
+        item.matrix = matrix
+
+
 def frame(owner) -> None:
     """Fill the camera's view with the window of the morph."""
     import bpy
@@ -88,8 +102,15 @@ def frame(owner) -> None:
     camera.location.x, camera.location.z = owner.location.x, owner.location.z
 
 
-def color_maps(owner, colors) -> None:
-    """Give the maps of both shapes of an object the same colors."""
-    for shape in (owner.ifs_morph.initial, owner.ifs_morph.final):
+def press(button: str) -> None:
+    """Press a button of the extension for the active object."""
+    import bpy
+
+    getattr(bpy.ops.ifs_morph, button)()
+
+
+def color_maps(owner, initial, final) -> None:
+    """Give each map of both shapes of an object a color."""
+    for shape, colors in ((owner.ifs_morph.initial, initial), (owner.ifs_morph.final, final)):
         for item, color in zip(shape.maps, colors, strict=True):
             item.color = color

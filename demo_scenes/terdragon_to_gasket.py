@@ -4,9 +4,10 @@ With the maps paired as they stand, the locus is made of vertical bands with a g
 just enough to close it.
 """
 
-from .stage import BACKGROUND, add_morph
+from .stage import BACKGROUND, BY_LOCUS, add_morph
 
 TITLE = "Terdragon to gasket"
+BUTTONS = BY_LOCUS
 
 
 def build(frames: int, size: int):
