@@ -17,7 +17,7 @@ class Keys:
     ----------
     time : (K,)
         Ascending.
-    value, handle_left, handle_right : (K,) or (K, 2)
+    value, handle_left, handle_right : (K, ...)
         Values of the keys and of the handles before and after them.
     """
 
@@ -36,17 +36,21 @@ class Keys:
 
 
 def smooth_keys(time: np.ndarray, value: np.ndarray) -> Keys:
-    """Keys of a smooth curve that does not overshoot, through values (K,) at times (K,)."""
+    """Keys of a smooth curve that does not overshoot, through values (K, ...) at times (K,)."""
     slope = slopes(time, value)
-    before = np.diff(time, prepend=time[0])
-    after = np.diff(time, append=time[-1])
+    column = (-1,) + (1,) * (value.ndim - 1)
+    before = np.diff(time, prepend=time[0]).reshape(column)
+    after = np.diff(time, append=time[-1]).reshape(column)
     return Keys(time, value, value - slope * before / 3, value + slope * after / 3)
 
 
 def slopes(times: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Slopes (K,) at keys of a curve that does not overshoot: harmonic means of both sides (Fritsch & Butland 1984)."""
-    secants = np.diff(values) / np.diff(times)
-    found = np.zeros(len(values))
+    """Slopes (K, ...) at keys of a curve that does not overshoot.
+
+    They are harmonic means of those on both sides (Fritsch & Butland 1984).
+    """
+    secants = np.diff(values, axis=0) / np.diff(times).reshape((-1,) + (1,) * (values.ndim - 1))
+    found = np.zeros(values.shape)
     before, after = secants[:-1], secants[1:]
     rising = before * after > 0
     found[1:-1][rising] = 2 * before[rising] * after[rising] / (before[rising] + after[rising])

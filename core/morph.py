@@ -183,6 +183,32 @@ class Morph:
         return np.ascontiguousarray(np.swapaxes(self.transitions_at(u) > 0, -1, -2))
 
 
+def spread(places: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """u, v and swell of places of a morph, as `Morph.at` takes them.
+
+    Parameters
+    ----------
+    places : (..., 3) or (..., 3 + 2M)
+        u, v and swell; and where maps have a (u,v) of their own, how much further in u each of M maps is, then in v.
+        Maps beyond those go along with u and v.
+    count : int
+        N, the maps of the morph.
+
+    Returns
+    -------
+    u, v : (..., 1) or (..., N)
+    swell : (..., 1)
+    """
+    places = np.asarray(places, dtype=float)
+    u, v, swell = (places[..., k : k + 1] for k in range(3))
+    if places.shape[-1] > 3:
+        offsets = places[..., 3:].reshape(*places.shape[:-1], 2, (places.shape[-1] - 3) // 2)[..., :count]
+        lacking = [(0, 0)] * (offsets.ndim - 1) + [(0, count - offsets.shape[-1])]
+        offsets = np.pad(offsets, lacking)
+        u, v = u + offsets[..., 0, :], v + offsets[..., 1, :]
+    return u, v, swell
+
+
 def _blend(start: np.ndarray, end: np.ndarray, along: np.ndarray) -> np.ndarray:
     return (1 - along) * start + along * end
 

@@ -1,8 +1,9 @@
 """A path through the (u,v) plane from the initial to the final shape, as keys for an animation.
 
 The path is planned on the connectedness locus (Burch & Hart 1997, Section 6) and keyed with as few keys as keep it
-there. Where no connected path exists, or only a far longer one, it takes the way of least swell instead. Whatever the
-plan, every frame of the keyed curve is checked at the end, and swell is added where one fails.
+there. Where no connected path exists, or only a far longer one, it takes the way of least swell instead. Each map may
+also get a path of its own. Whatever the plan, every frame of the keyed curve is checked at the end, and swell is added
+where one fails.
 """
 
 from __future__ import annotations
@@ -14,17 +15,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import parallel
+from .band import band_steps
 from .connectedness import Connectedness
 from .curve import Keys, smooth_keys
 from .deciding import are_connected
 from .locus import Locus, compute_locus_steps, nodes
-from .morph import Morph
+from .morph import Morph, spread
 from .report import PathReport, check_frames_steps, family
 from .route import STEPS, cheapest_route, clearance
 from .swelling import envelope, least_swell_field_steps, least_swell_steps
 
-METHODS = ("planned", "straight", "straight unswollen")
-"""Through the locus; straight with least swell; straight without swell, the paper's Figure 5."""
+METHODS = ("planned", "per map", "straight", "straight unswollen")
+"""Through the locus; a path for each map; straight with least swell; straight without swell, the paper's Figure 5."""
 
 LOCUS_RESOLUTION = 256
 SWELL_RESOLUTION = 97
@@ -65,21 +67,27 @@ class Path:
         Of (u,v), values (K, 2).
     swell_keys : Keys
         Of the swell, values (S,).
+    offset_keys : Keys or None
+        How much further than that each map is in u, and in v, values (K, 2, N); None where all maps go together.
     report : PathReport
     """
 
     keys: Keys
     swell_keys: Keys
+    offset_keys: Keys | None
     report: PathReport
 
-    def at(self, t: float) -> tuple[float, float, float]:
-        """u, v and swell at the time t in [0, 1]."""
-        u, v, swell = self.sample(np.array([float(t)]))[0]
-        return float(u), float(v), float(swell)
+    def at(self, t: float) -> tuple[float | np.ndarray, float | np.ndarray, float]:
+        """u, v and swell at the time t in [0, 1]; u and v are (N,) where maps have paths of their own."""
+        place = self.sample(np.array([float(t)]))[0]
+        u, v, swell = place[:3].tolist()
+        if self.offset_keys is None:
+            return u, v, swell
+        return *spread(place, self.offset_keys.value.shape[2])[:2], swell
 
     def sample(self, t: np.ndarray) -> np.ndarray:
-        """u, v and swell (F, 3) at the times t (F,) in [0, 1]."""
-        return _sample(self.keys, self.swell_keys, np.asarray(t, dtype=float))
+        """Places (F, 3) or (F, 3 + 2N), see `morph.spread`, at the times t (F,) in [0, 1]."""
+        return _sample(self.keys, self.swell_keys, self.offset_keys, np.asarray(t, dtype=float))
 
 
 def plan_path(
@@ -135,7 +143,7 @@ def plan_path_steps(
     morph.initial.require_attractor()
     morph.final.require_attractor()
     keys = _straight_keys(np.array([[0.0, 0.0], [1.0, 1.0]]), frames)
-    reason = ""
+    offset_keys, reason = None, ""
     if method == "planned":
         if locus is None:
             locus = yield from parallel.part(
@@ -152,21 +160,32 @@ def plan_path_steps(
             field = yield from parallel.part(least_swell_field_steps(morph, u, v, tolerance, threads=threads), 0.5, 0.7)
             points = _route_of_least_swell(u, v, field)
         keys = _rounded(morph, _straight_keys(points, frames), frames, tolerance)
+    if method == "per map":
+        found = yield from parallel.part(band_steps(morph, keys, frames, tolerance), 0.0, 0.7)
+        if found.value.any():
+            offset_keys = found
+            furthest = np.hypot(*np.moveaxis(found.value, 1, 0)).max()
+            reason = f"Each map goes along a path of its own, up to {furthest:.2f} beside the straight line in (u,v)."
     swell_keys = _no_swell()
     if method != "straight unswollen":
-        swell_keys = yield from parallel.part(_swell_steps(morph, keys, frames, tolerance, threads), 0.7, 0.9)
+        swell_keys = yield from parallel.part(
+            _swell_steps(morph, keys, offset_keys, frames, tolerance, threads), 0.7, 0.9
+        )
     times = np.arange(frames) / (frames - 1)
     checked = yield from parallel.part(
-        check_frames_steps(morph, _sample(keys, swell_keys, times), tolerance, threads), 0.9, 0.95
+        check_frames_steps(morph, _sample(keys, swell_keys, offset_keys, times), tolerance, threads), 0.9, 0.95
     )
     straight = yield from parallel.part(
         check_frames_steps(morph, np.stack([times, times, 0 * times], axis=1), tolerance, threads), 0.95, 1.0
     )
-    return Path(keys, swell_keys, PathReport(checked, straight, method, reason, morph.flips))
+    return Path(keys, swell_keys, offset_keys, PathReport(checked, straight, method, reason, morph.flips))
 
 
-def _sample(keys: Keys, swell_keys: Keys, times: np.ndarray) -> np.ndarray:
-    return np.column_stack([keys.at(times), np.clip(swell_keys.at(times), 0.0, 1.0)])
+def _sample(keys: Keys, swell_keys: Keys, offset_keys: Keys | None, times: np.ndarray) -> np.ndarray:
+    places = np.column_stack([keys.at(times), np.clip(swell_keys.at(times), 0.0, 1.0)])
+    if offset_keys is None:
+        return places
+    return np.column_stack([places, offset_keys.at(times).reshape(len(times), -1)])
 
 
 def _length(points: np.ndarray) -> float:
@@ -308,12 +327,12 @@ def _rounded(morph: Morph, keys: Keys, frames: int, tolerance: float) -> Keys:
 
 
 def _swell_steps(
-    morph: Morph, keys: Keys, frames: int, tolerance: float, threads: int | None
+    morph: Morph, keys: Keys, offset_keys: Keys | None, frames: int, tolerance: float, threads: int | None
 ) -> Generator[float, None, Keys]:
     """Keys of the least smooth swell that holds every frame together, zero at both ends."""
     times = np.arange(frames) / (frames - 1)
-    uv = keys.at(times)
-    needed = yield from parallel.part(least_swell_steps(morph, uv, tolerance, 0.0, threads), 0.0, 0.5)
+    places = _sample(keys, _no_swell(), offset_keys, times)
+    needed = yield from parallel.part(least_swell_steps(morph, places, tolerance, 0.0, threads), 0.0, 0.5)
     needed = _zero_at_ends(needed)
     for attempt in range(SWELL_ATTEMPTS):
         if not needed.any():
@@ -323,7 +342,7 @@ def _swell_steps(
         # More swell than the least can fail; there the next that works is asked for.
         above = np.clip(swell_keys.at(times), 0.0, 1.0)
         share = 0.5 + 0.5 * attempt / SWELL_ATTEMPTS
-        steps = least_swell_steps(morph, uv, tolerance, above, threads)
+        steps = least_swell_steps(morph, places, tolerance, above, threads)
         raised = yield from parallel.part(steps, share, share + 0.5 / SWELL_ATTEMPTS)
         raised = _zero_at_ends(raised)
         failing = raised > above + 1e-12

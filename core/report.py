@@ -10,7 +10,7 @@ import numpy as np
 from . import parallel
 from .connectedness import Connectedness
 from .deciding import decide_frames
-from .morph import Morph
+from .morph import Morph, spread
 
 CHUNK = 16
 """Frames checked in one chunk of work."""
@@ -22,8 +22,8 @@ class FrameCheck:
 
     Attributes
     ----------
-    uv_swell : (F, 3)
-        What was checked: u, v and swell of each frame.
+    uv_swell : (F, 3) or (F, 3 + 2N)
+        What was checked: a place of each frame, see `morph.spread`.
     state : (F,) uint8
         Values of `Connectedness`.
     gap : (F, 2)
@@ -127,8 +127,8 @@ def check_frames(
     Parameters
     ----------
     morph : Morph
-    uv_swell : (F, 3)
-        u, v and swell of each frame.
+    uv_swell : (F, 3) or (F, 3 + 2N)
+        A place of each frame, see `morph.spread`.
     tolerance : float
         Relative to the enclosing diameter of each frame's attractor.
 
@@ -144,7 +144,7 @@ def check_frames_steps(
     morph: Morph, uv_swell: np.ndarray, tolerance: float = 1 / 300, threads: int | None = None
 ) -> Generator[float, None, FrameCheck]:
     """`check_frames` in steps, each yielding the share done."""
-    uv_swell = np.asarray(uv_swell, dtype=float).reshape(-1, 3)
+    uv_swell = np.asarray(uv_swell, dtype=float)
     if len(uv_swell) == 0:
         raise ValueError("There are no frames to check.")
     linear, translation, follows = family(morph, uv_swell)
@@ -158,14 +158,14 @@ def check_frames_steps(
     return FrameCheck(uv_swell, state, np.concatenate([chunk[1] for chunk in chunks]), float(tolerance))
 
 
-def family(morph: Morph, uv_swell: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def family(morph: Morph, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Linear parts (F, N, 4), translations (F, N, 2), and which letters follow which (F, N, N), as kernels take them.
 
-    At u, v and swell (F, 3). In space linear parts are (F, N, 9) and translations (F, N, 3).
+    At places (F, 3) or (F, 3 + 2N), see `morph.spread`. In space linear parts are (F, N, 9) and translations (F, N, 3).
     """
-    u, v, swell = uv_swell.T[..., None]
-    linear = np.ascontiguousarray(morph.linear(u, swell)).reshape(len(uv_swell), morph.count, -1)
-    return linear, np.ascontiguousarray(morph.translation(v)), morph.follows_at(uv_swell[:, 0])
+    u, v, swell = spread(places, morph.count)
+    linear = np.ascontiguousarray(morph.linear(u, swell)).reshape(len(places), morph.count, morph.DIMENSION**2)
+    return linear, np.ascontiguousarray(morph.translation(v)), morph.follows_at(places[:, 0])
 
 
 def _sentence(subject: str, check: FrameCheck) -> str:

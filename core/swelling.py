@@ -24,22 +24,26 @@ CHUNK = 8
 
 
 def least_swell_steps(
-    morph: Morph, uv: np.ndarray, tolerance: float, at_least: np.ndarray | float = 0.0, threads: int | None = None
+    morph: Morph, places: np.ndarray, tolerance: float, at_least: np.ndarray | float = 0.0, threads: int | None = None
 ) -> Generator[float, None, np.ndarray]:
-    """Least swell (F,) that makes the shape connected at each of uv (F, 2), from `at_least` on; in steps."""
-    uv = np.asarray(uv, dtype=float).reshape(-1, 2)
-    start = np.broadcast_to(at_least, len(uv))
+    """Least swell (F,) that makes the shape connected at each of some places, from `at_least` on; in steps.
+
+    Places are as `morph.spread` takes them; the swell in them does not count.
+    """
+    start = np.broadcast_to(at_least, len(places))
 
     def search(first: int) -> list[float]:
-        return [_least(morph, uv[k], start[k], tolerance) for k in range(first, min(first + CHUNK, len(uv)))]
+        return [_least(morph, places[k], start[k], tolerance) for k in range(first, min(first + CHUNK, len(places)))]
 
-    found = yield from parallel.steps(search, range(0, len(uv), CHUNK), threads)
+    found = yield from parallel.steps(search, range(0, len(places), CHUNK), threads)
     return np.concatenate(found) if found else np.empty(0)
 
 
-def _least(morph: Morph, uv: np.ndarray, start: float, tolerance: float) -> float:
+def _least(morph: Morph, place: np.ndarray, start: float, tolerance: float) -> float:
     swells = np.append(start, np.arange(np.floor(start * LEVELS) + 1, LEVELS + 1) / LEVELS)
-    linear, translation, follows = family(morph, np.column_stack([np.full((len(swells), 2), uv), swells]))
+    places = np.tile(place, (len(swells), 1))
+    places[:, 2] = swells
+    linear, translation, follows = family(morph, places)
     for k, swell in enumerate(swells):
         if are_connected(linear[k : k + 1], translation[k : k + 1], follows[k : k + 1], tolerance)[0]:
             return float(swell)

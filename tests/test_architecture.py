@@ -38,6 +38,7 @@ CORE = (
     "route",
     "curve",
     "handles",
+    "band",
     "swelling",
     "path",
     # It ends with the path through the morph that it found.

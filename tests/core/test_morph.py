@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from core.connectedness import Connectedness, connectedness
 from core.ifs import IFS, Contractivity, IFSError
-from core.morph import SCHEMES, SWOLLEN, Morph
+from core.morph import SCHEMES, SWOLLEN, Morph, spread
 from core.shapes import SHAPES
 
 seeds = st.integers(0, 2**32 - 1)
@@ -354,3 +354,30 @@ def test_attributes():
     morph = Morph(initial, final, "log-polar", [1, 0, -2])
     assert (morph.initial, morph.final, morph.scheme, morph.count) == (initial, final, "log-polar", 3)
     assert morph.winding.tolist() == [1, 0, -2]
+
+
+@given(st.integers(1, 5), st.integers(0, 7), st.integers(0, 2**32))
+def test_places_spread_over_maps(count, known, seed):
+    """Maps that a place says nothing of go along with u and v; what it says of maps that are not there is left."""
+    random = np.random.default_rng(seed)
+    place, offsets = random.normal(size=3), random.normal(size=(2, known))
+    u, v, swell = spread(np.concatenate([place, offsets.ravel()]), count)
+    for i in range(count):
+        own = offsets[:, i] if i < known else np.zeros(2)
+        assert np.broadcast_to(u, count)[i] == place[0] + own[0]
+        assert np.broadcast_to(v, count)[i] == place[1] + own[1]
+    assert swell.tolist() == [place[2]]
+
+
+def test_many_places_spread_at_once():
+    places = np.random.default_rng(3).normal(size=(4, 3 + 2 * 3))
+    together = spread(places, 3)
+    for k, place in enumerate(places):
+        assert all(np.array_equal(each[k], one) for each, one in zip(together, spread(place, 3), strict=True))
+
+
+def test_a_place_with_no_offsets_is_the_common_one():
+    morph = Morph(SHAPES["terdragon"], SHAPES["gasket"])
+    common = morph.at(0.3, 0.6, 0.1).maps
+    for place in ([0.3, 0.6, 0.1], [0.3, 0.6, 0.1, 0, 0, 0, 0, 0, 0]):
+        assert np.array_equal(morph.at(*spread(place, 3)).maps, common)

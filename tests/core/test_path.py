@@ -135,10 +135,12 @@ def test_between_frames_it_holds_too(name, frames):
 @pytest.mark.parametrize("method", METHODS)
 def test_the_ends_are_the_users_own_shapes(name, method):
     path = path_of(name, method)
-    assert path.at(0) == (0, 0, 0)
-    assert path.at(1) == (1, 1, 0)
-    assert path.at(-3) == path.at(0)
-    assert path.at(7) == path.at(1)
+    for t in (0, 1):
+        u, v, swell = path.at(t)
+        assert np.all(u == t)
+        assert np.all(v == t)
+        assert swell == 0
+    assert np.array_equal(path.sample(np.array([-3.0, 7.0])), path.sample(np.array([0.0, 1.0])))
     keys = path.swell_keys
     for ends in (keys.value, keys.handle_left, keys.handle_right):
         assert ends[0] == ends[-1] == 0
@@ -207,6 +209,17 @@ def test_sample_is_at_many_times(name):
     path = path_of(name)
     times = np.linspace(0, 1, 17)
     assert path.sample(times).tolist() == [list(path.at(t)) for t in times]
+
+
+def test_sample_where_each_map_has_its_own_path():
+    path = path_of("terdragon", "per map")
+    for t in np.linspace(0, 1, 17):
+        u, v, swell = path.at(t)
+        assert u.shape == v.shape == (3,)
+        offsets = path.offset_keys.at(np.array([t]))[0]
+        common = path.keys.at(np.array([t]))[0]
+        assert np.array_equal([u, v], common[:, None] + offsets)
+        assert np.array_equal(path.sample(np.array([t]))[0], [*common, swell, *offsets.ravel()])
 
 
 @pytest.mark.parametrize("frames", [2, 3, 4, 7])
@@ -289,7 +302,7 @@ def test_dust_to_dust():
     assert path.report.path.count(CONNECTED) == 18
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", [method for method in METHODS if method != "per map"])
 def test_where_the_attractor_vanishes_on_the_way(method):
     path = plan_path(no_attractor_between(), frames=30, method=method)
     lost = path.report.path.count(NO_ATTRACTOR)
@@ -297,6 +310,13 @@ def test_where_the_attractor_vanishes_on_the_way(method):
     assert path.report.path.share_disconnected >= lost / 30
     assert np.isfinite(path.sample(np.linspace(0, 1, 100))).all()
     assert f"{lost} without an attractor" in path.report.text()
+
+
+def test_paths_of_their_own_avoid_what_has_no_attractor():
+    path = plan_path(no_attractor_between(), frames=30, method="per map")
+    assert path.report.straight.count(NO_ATTRACTOR) > 0
+    assert (path.report.path.state[1:-1] == CONNECTED).all()
+    assert states(no_attractor_between(), path, 30)[1:-1] == [CONNECTED] * 28
 
 
 def test_a_shape_to_itself():
@@ -317,7 +337,7 @@ def test_an_end_without_an_attractor_is_refused_by_name():
 
 
 def test_unknown_method():
-    with pytest.raises(ValueError, match=r"“wiggly”.*planned, straight, straight unswollen"):
+    with pytest.raises(ValueError, match=r"“wiggly”.*planned, per map, straight, straight unswollen"):
         plan_path(MORPHS["gaskets"], method="wiggly")
 
 

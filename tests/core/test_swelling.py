@@ -9,7 +9,7 @@ from scipy.interpolate import BPoly
 from core.connectedness import Connectedness, connectedness
 from core.curve import bezier, slopes, smooth_keys
 from core.ifs import IFS
-from core.morph import Morph
+from core.morph import Morph, spread
 from core.parallel import finish
 from core.shapes import SHAPES
 from core.swelling import (
@@ -47,35 +47,41 @@ def plain_least(morph, uv, start, tolerance):
 @pytest.mark.parametrize("morph", [TERDRAGON, FERN])
 @pytest.mark.parametrize("at_least", [0.0, 0.2])
 def test_least_swell_by_plain_search(morph, at_least):
-    uv = np.random.default_rng(6).uniform(0, 1, (20, 2))
-    found = finish(least_swell_steps(morph, uv, 1 / 300, at_least))
-    expected = [plain_least(morph, at, at_least, 1 / 300) for at in uv]
+    places = np.pad(np.random.default_rng(6).uniform(0, 1, (20, 2)), ((0, 0), (0, 1)))
+    found = finish(least_swell_steps(morph, places, 1 / 300, at_least))
+    expected = [plain_least(morph, at, at_least, 1 / 300) for at in places[:, :2]]
     assert found.tolist() == expected
     assert (found > at_least).any()
     assert (found == at_least).any()
 
 
 def test_least_swell_from_one_bound_for_each():
-    uv = np.full((5, 2), 0.5)
     start = np.array([0, 0.1, 0.33, 0.99, 1.0])
-    found = finish(least_swell_steps(TERDRAGON, uv, 1 / 300, start))
-    assert found.tolist() == [plain_least(TERDRAGON, at, low, 1 / 300) for at, low in zip(uv, start, strict=True)]
+    found = finish(least_swell_steps(TERDRAGON, np.full((5, 3), 0.5), 1 / 300, start))
+    assert found.tolist() == [plain_least(TERDRAGON, (0.5, 0.5), low, 1 / 300) for low in start]
     assert (found >= start).all()
 
 
 def test_where_there_is_no_attractor_no_swell_helps():
-    assert finish(least_swell_steps(flat_between(), [[0.5, 0.5]], 1 / 300)).tolist() == [NEVER]
+    assert finish(least_swell_steps(flat_between(), [[0.5, 0.5, 0]], 1 / 300)).tolist() == [NEVER]
 
 
 def test_no_frames_need_no_swell():
-    assert len(finish(least_swell_steps(TERDRAGON, np.empty((0, 2)), 1 / 300))) == 0
+    assert len(finish(least_swell_steps(TERDRAGON, np.empty((0, 3)), 1 / 300))) == 0
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_least_swell_does_not_depend_on_threads(threads):
-    uv = np.random.default_rng(7).uniform(0, 1, (30, 2))
-    found = finish(least_swell_steps(TERDRAGON, uv, 1 / 300, 0.0, threads))
-    assert found.tobytes() == finish(least_swell_steps(TERDRAGON, uv, 1 / 300, 0.0, 1)).tobytes()
+    places = np.random.default_rng(7).uniform(0, 1, (30, 3))
+    found = finish(least_swell_steps(TERDRAGON, places, 1 / 300, 0.0, threads))
+    assert found.tobytes() == finish(least_swell_steps(TERDRAGON, places, 1 / 300, 0.0, 1)).tobytes()
+
+
+def test_least_swell_where_each_map_has_its_own_place():
+    place = np.array([0.5, 0.5, 0, 0.2, 0.14, -0.11, -0.19, -0.09, 0.01])
+    found = finish(least_swell_steps(TERDRAGON, place[None], 1 / 300))
+    assert found[0] == plain_least(TERDRAGON, spread(place, 3)[:2], 0.0, 1 / 300)
+    assert found[0] != plain_least(TERDRAGON, (0.5, 0.5), 0.0, 1 / 300)
 
 
 @pytest.mark.parametrize("morph", [TERDRAGON, flat_between()])
