@@ -34,7 +34,7 @@ CLOSING = 0.9
 DIRECTIONS = np.array([[1, 1], [1, 0], [0, 1]])
 """Of moves: in u and v, or in one of them."""
 
-MOST_WORK = 250_000
+MOST_WORK = 750_000
 """Shapes decided, times their pairs of maps: a few seconds."""
 
 FIRST_PUSH, LAST_PUSH = 0.4, 0.02

@@ -12,7 +12,7 @@ from ..core.affine import from_parameters, to_parameters
 from ..core.connectedness import Connectedness, connectedness
 from ..core.ifs import IFS, Contractivity, IFSError
 from ..core.matching import Pair, morph_of_pairs
-from ..core.morph import SCHEMES, Morph
+from ..core.morph import SCHEMES, Morph, spread
 from ..core.raster import fit_window as fitted_window
 from ..core.shading import attractorlet_colors
 from ..core.space.ifs import SpaceIFS
@@ -138,6 +138,11 @@ def _paired_morph(initial: IFS, final: IFS, scheme: str, paired: tuple[Pair, ...
     return morph_of_pairs(initial, final, paired, core_name(scheme, SCHEMES))
 
 
+def frame_of(settings, morph: Morph) -> IFS:
+    """The IFS of a morph at the settings' (u,v), swell and offsets."""
+    return morph.at(*spread(fcurves.place_of(settings), morph.count))
+
+
 def is_in_space(settings) -> bool:
     """Whether one of an object's shapes lies in space."""
     return settings.initial.in_space or settings.final.in_space
@@ -176,14 +181,14 @@ def state_sentence(settings) -> str:
     if preparation.is_running():
         return preparation.message()
     try:
-        return _state_sentence(morph_of(settings), *settings.uv, settings.swell, tolerance(settings))
+        return _state_sentence(morph_of(settings), tuple(fcurves.place_of(settings)), tolerance(settings))
     except IFSError as error:
         return str(error)
 
 
 @lru_cache(maxsize=256)
-def _state_sentence(morph: Morph, u: float, v: float, swell: float, tolerance: float) -> str:
-    verdict = connectedness(morph.at(u, v, swell), tolerance)
+def _state_sentence(morph: Morph, place: tuple[float, ...], tolerance: float) -> str:
+    verdict = connectedness(morph.at(*spread(place, morph.count)), tolerance)
     if verdict.state == Connectedness.CONNECTED:
         return "Here the shape is in one piece."
     if verdict.state == Connectedness.DISCONNECTED:
@@ -287,7 +292,7 @@ def edited_shape(owner):
 
 
 def path_samples(owner, count: int = FIT_SAMPLES) -> np.ndarray:
-    """u, v and swell (F, 3) along the keyed path, or along the straight one where none is keyed."""
+    """Places, see `core.morph.spread`, along the keyed path, or along the straight one where none is keyed."""
     if fcurves.has_path(owner):
         frames = fcurves.key_frames(owner)
         return fcurves.sample_path(owner, np.linspace(frames[0], frames[-1], count))
@@ -297,12 +302,14 @@ def path_samples(owner, count: int = FIT_SAMPLES) -> np.ndarray:
 
 def path_norms(owner, morph: Morph) -> np.ndarray:
     """Largest norm (N,) of each map along the path: what the renderer cuts by, so that no frame is cut differently."""
-    return _path_norms(morph, path_samples(owner, NORM_SAMPLES).tobytes())
+    samples = path_samples(owner, NORM_SAMPLES)
+    return _path_norms(morph, samples.tobytes(), samples.shape[1])
 
 
 @lru_cache(maxsize=16)
-def _path_norms(morph: Morph, samples: bytes) -> np.ndarray:
-    return np.max([morph.at(*place).norms for place in np.frombuffer(samples).reshape(-1, 3)], axis=0)
+def _path_norms(morph: Morph, samples: bytes, width: int) -> np.ndarray:
+    places = np.frombuffer(samples).reshape(-1, width)
+    return np.max([morph.at(*spread(place, morph.count)).norms for place in places], axis=0)
 
 
 def fit_window(owner) -> None:
@@ -313,7 +320,7 @@ def fit_window(owner) -> None:
         return
     try:
         morph = morph_of(settings)
-        shapes = [morph.at(*place) for place in path_samples(owner)]
+        shapes = [morph.at(*spread(place, morph.count)) for place in path_samples(owner)]
         if morph.DIMENSION == 2:
             output.window, output.depth = fitted_window(shapes, tuple(output.resolution)), (0.0, 0.0)
         else:

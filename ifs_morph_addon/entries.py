@@ -8,6 +8,7 @@ from ..core.ifs import IFSError
 from .conversion import (
     MOST_RECURRENT,
     frame_colors,
+    frame_of,
     morph_of,
     shape_colors,
     shape_ifs,
@@ -60,8 +61,7 @@ def shape_entry(shape, name: str) -> Entry:
 
 def frame_entry(settings, name: str) -> Entry:
     """Return the shape that a morph has at its (u,v) and swell as an entry; raises IFSError."""
-    u, v = settings.uv
-    ifs = morph_of(settings).at(u, v, settings.swell)
+    ifs = frame_of(settings, morph_of(settings))
     return _entry(name, ifs.maps, ifs.weights, ifs.transitions, frame_colors(settings)[:, :3])
 
 

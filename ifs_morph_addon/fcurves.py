@@ -6,18 +6,31 @@ of the interval make time linear in the parameter, and so (u,v) runs along the v
 
 import numpy as np
 
+from ..core.ifs import IFSError
 from . import compat
 
 CHANNELS = (("ifs_morph.uv", 0), ("ifs_morph.uv", 1), ("ifs_morph.swell", 0))
 """Data path and array index of u, v and swell."""
 
+MOST_OFFSETS = 32
+"""Maps that can have a path of their own: the longest row of numbers that a property of Blender holds."""
 
-def path_curves(owner):
-    """F-curves of u, v and swell on an object; None for each that it has not."""
+OFFSET_CHANNELS = tuple((f"ifs_morph.offset_{axis}", k) for axis in "uv" for k in range(MOST_OFFSETS))
+"""Of how much further each map is in u, then in v."""
+
+
+def path_curves(owner, channels=CHANNELS):
+    """F-curves of u, v and swell on an object, or of other channels; None for each that it has not."""
     curves = compat.fcurves(owner)
     if curves is None:
-        return [None] * len(CHANNELS)
-    return [curves.find(data_path, index=index) for data_path, index in CHANNELS]
+        return [None] * len(channels)
+    return [curves.find(data_path, index=index) for data_path, index in channels]
+
+
+def place_of(settings) -> list[float]:
+    """u, v and swell, and the offsets of all maps if there are any: a place as `core.morph.spread` takes it."""
+    offsets = [*settings.offset_u, *settings.offset_v]
+    return [*settings.uv, settings.swell, *(offsets if any(offsets) else ())]
 
 
 def has_path(owner) -> bool:
@@ -33,28 +46,44 @@ def obstacle(owner) -> str | None:
     if data is not None and any(
         driver.data_path == data_path and driver.array_index == index
         for driver in data.drivers
-        for data_path, index in CHANNELS
+        for data_path, index in CHANNELS + OFFSET_CHANNELS
     ):
-        return "UV or Swell has a driver; remove it first"
-    if any(curve is not None and curve.lock for curve in path_curves(owner)):
-        return "The F-curve of UV or Swell is locked; unlock it first"
+        return "UV, Swell or an offset has a driver; remove it first"
+    if any(curve is not None and curve.lock for curve in path_curves(owner, CHANNELS + OFFSET_CHANNELS)):
+        return "The F-curve of UV, Swell or an offset is locked; unlock it first"
     return None
 
 
 def write_path(owner, path, frame_start: int, frame_end: int) -> None:
-    """Key a `core.path.Path` over a frame range, in place of what u, v and swell had as keys."""
-    keys, swell = path.keys, path.swell_keys
-    span = frame_end - frame_start
-    for axis, (data_path, index) in enumerate(CHANNELS[:2]):
-        curve = compat.ensure_fcurve(owner, data_path, index)
-        values = keys.value[:, axis], keys.handle_left[:, axis], keys.handle_right[:, axis]
-        _write_keys(curve, frame_start + span * keys.time, *values)
-    curve = compat.ensure_fcurve(owner, *CHANNELS[2])
-    _write_keys(curve, frame_start + span * swell.time, swell.value, swell.handle_left, swell.handle_right)
+    """Key a `core.path.Path` over a frame range, in place of what u, v, swell and offsets had as keys.
+
+    Raises
+    ------
+    IFSError
+        If more maps have paths of their own than offsets can be stored of.
+    """
+    offsets = path.offset_keys
+    if offsets is not None and offsets.value.shape[2] > MOST_OFFSETS:
+        raise IFSError(
+            f"The morph has {offsets.value.shape[2]} maps, and {MOST_OFFSETS} at most can have paths of their own; "
+            "choose another method."
+        )
+    frames = range(frame_start, frame_end)
+    for axis, channel in enumerate(CHANNELS[:2]):
+        _write_keys(compat.ensure_fcurve(owner, *channel), frames, path.keys, axis)
+    _write_keys(compat.ensure_fcurve(owner, *CHANNELS[2]), frames, path.swell_keys)
+    remove_offsets(owner)
+    if offsets is not None:
+        for axis, k in np.ndindex(offsets.value.shape[1:]):
+            channel = OFFSET_CHANNELS[axis * MOST_OFFSETS + k]
+            _write_keys(compat.ensure_fcurve(owner, *channel), frames, offsets, axis, k)
     owner.update_tag()
 
 
-def _write_keys(curve, frames, values, left, right):
+def _write_keys(curve, frame_range, keys, *index):
+    """Write the keys of one of the values of a `core.curve.Keys` over a range of frames, its end included."""
+    frames = frame_range.start + (frame_range.stop - frame_range.start) * keys.time
+    values, left, right = (each[:, *index] for each in (keys.value, keys.handle_left, keys.handle_right))
     curve.keyframe_points.clear()
     curve.keyframe_points.add(len(frames))
     thirds = np.diff(frames) / 3
@@ -69,12 +98,18 @@ def _write_keys(curve, frames, values, left, right):
 
 
 def sample_path(owner, frames) -> np.ndarray:
-    """u, v and swell (F, 3) at frames, from the F-curves and otherwise from the properties, without moving in time."""
-    settings = owner.ifs_morph
-    still = (*settings.uv, settings.swell)
+    """Places at frames, from the F-curves and otherwise from the properties, without moving in time.
+
+    They are (F, 3), u, v and swell, or with the offsets of all maps (F, 3 + 2 MOST_OFFSETS).
+    """
+    still, curves = place_of(owner.ifs_morph), path_curves(owner)
+    offsets = path_curves(owner, OFFSET_CHANNELS)
+    if len(still) > len(CHANNELS) or any(curve is not None for curve in offsets):
+        curves += offsets
+        still += [0.0] * (len(curves) - len(still))
     columns = [
         [value] * len(frames) if curve is None or curve.is_empty else [curve.evaluate(frame) for frame in frames]
-        for curve, value in zip(path_curves(owner), still, strict=True)
+        for curve, value in zip(curves, still, strict=True)
     ]
     return np.array(columns, dtype=float).T
 
@@ -86,9 +121,20 @@ def key_frames(owner) -> list[float]:
 
 
 def remove_path(owner) -> None:
-    """Remove the F-curves of u, v and swell; other animation stays."""
+    """Remove the F-curves of u, v and swell, and the offsets; other animation stays."""
+    _remove(owner, CHANNELS)
+    remove_offsets(owner)
+    owner.update_tag()
+
+
+def remove_offsets(owner) -> None:
+    """Let all maps go together again."""
+    _remove(owner, OFFSET_CHANNELS)
+    owner.ifs_morph.offset_u = owner.ifs_morph.offset_v = (0.0,) * MOST_OFFSETS
+
+
+def _remove(owner, channels) -> None:
     curves = compat.fcurves(owner)
-    for curve in path_curves(owner):
+    for curve in path_curves(owner, channels):
         if curve is not None:
             curves.remove(curve)
-    owner.update_tag()

@@ -84,6 +84,14 @@ class IFSMorphMatchSettings(bpy.types.PropertyGroup):
         options=STILL,
         override=LEAF,
     )
+    choose_scheme: BoolProperty(
+        name="Choose Scheme",
+        description="Morph with the scheme, Polar or Log-Polar, that swells less. Otherwise the one chosen stays, "
+        "and Elementwise always does",
+        default=True,
+        options=STILL,
+        override=LEAF,
+    )
 
 
 CLASSES = (IFSMorphPair, IFSMorphMatchSettings)

@@ -18,6 +18,7 @@ from bpy.props import (
 
 from . import conversion
 from .conversion import MOST_RECURRENT, identifier
+from .fcurves import MOST_OFFSETS
 from .output_properties import IFSMorphOutputSettings
 from .pair_properties import CLASSES as PAIR_CLASSES
 from .pair_properties import IFSMorphMatchSettings
@@ -34,6 +35,10 @@ FLIPS = {
 }
 METHODS = {
     "planned": ("Planned", "Find a way through the connectedness locus, and swell only where there is none"),
+    "per map": (
+        "Per Map",
+        "Give each map a path of its own, beside the straight line where the shape would break",
+    ),
     "straight": ("Straight", "Go straight from the initial to the final shape and swell where it would break"),
     "straight unswollen": ("Straight, Unswollen", "Go straight and let the shape break"),
 }
@@ -56,6 +61,23 @@ def _parameter(first, last=None):
         conversion.set_map_parameters(self, parameters)
 
     return {"get": get, "set": set_, "options": STILL}
+
+
+def _offsets(axis, what):
+    return FloatVectorProperty(
+        name=f"Offset {axis}",
+        description=f"How much further than {axis} the map is {what}",
+        size=MOST_OFFSETS,
+        default=(0.0,) * MOST_OFFSETS,
+        min=-10.0,
+        max=10.0,
+        soft_min=-1.0,
+        soft_max=1.0,
+        step=1,
+        precision=4,
+        override=LEAF,
+        update=redraw,
+    )
 
 
 class IFSMorphMap(bpy.types.PropertyGroup):
@@ -311,6 +333,8 @@ class IFSMorphSettings(bpy.types.PropertyGroup):
         override=LEAF,
         update=redraw,
     )
+    offset_u: _offsets("U", "in its turn and stretch")
+    offset_v: _offsets("V", "on the way of its translation")
     edit_maps: BoolProperty(
         name="Edit Maps in Viewport",
         description="Show the maps as triangles whose corners can be dragged in the viewport",

@@ -10,8 +10,8 @@ import numpy as np
 
 from .. import parallel
 from ..connectedness import Connectedness
-from ..ifs import IFS
-from ..morph import Morph
+from ..ifs import IFS, IFSError
+from ..morph import Morph, spread
 from ..path import Path, plan_path_steps
 from ..report import check_frames_steps
 from .account import MatchReport
@@ -36,8 +36,14 @@ MISSED = 3
 PLANNED = 2
 """Candidates for which a path is planned where the straight line needs swell."""
 
+DEFAULT_SCHEMES = ("polar", "log-polar")
+"""Tried where none is asked for; the second with the best candidate only."""
+
 PLANNED_MAPS = 9
-"""With more maps than this a plan through (u,v) takes too long, and gains little over the straight line."""
+"""With more maps than this a plan takes too long, and gains little over the straight line."""
+
+LENGTH_SAMPLES = 241
+"""Times between which paths are measured as if straight."""
 
 LONGER = 0.02
 """What a path twice as long as the straight line costs."""
@@ -75,7 +81,7 @@ def match(
     locked: Sequence[Pair] = (),
     initial_words: Sequence[Word] | None = None,
     final_words: Sequence[Word] | None = None,
-    scheme: str = "polar",
+    scheme: str | None = None,
     budget: int = BUDGET,
     threads: int | None = None,
     progress: Callable[[float], bool | None] | None = None,
@@ -95,8 +101,9 @@ def match(
         Pairs that the result is to have. A symmetry or winding of None is left open.
     initial_words, final_words : sequence of tuple of int, optional
         The pieces of each shape to use, each once; by default its maps, split where that helps.
-    scheme : str
-        Of the morph, see `morph.SCHEMES`. The search itself goes by the polar one.
+    scheme : str, optional
+        Of the morph, see `morph.SCHEMES`; by default the polar one, or the log-polar where that swells less. The search
+        itself goes by the polar one.
     budget : int
         Work of the search. It is counted, not timed: the result is the same on every machine, for any number of
         threads.
@@ -133,7 +140,7 @@ def match_steps(
     locked: Sequence[Pair] = (),
     initial_words: Sequence[Word] | None = None,
     final_words: Sequence[Word] | None = None,
-    scheme: str = "polar",
+    scheme: str | None = None,
     budget: int = BUDGET,
     threads: int | None = None,
     found: Callable[[Match], None] | None = None,
@@ -179,7 +186,7 @@ def match_steps(
         for ifs, words in zip((initial, final), settled, strict=True)
     ]
     best = None
-    if free and scheme == "polar":
+    if free and scheme in (None, DEFAULT_SCHEMES[0]):
         given = Problem(*ends, tolerance, (), threads)
         start = given.evaluate(given.starts()[:1])[0]
         best = as_match(naive, naive_morph, straight, start.cost_beside_swell, 0)
@@ -205,17 +212,30 @@ def match_steps(
     work = sum(problem.work for problem in searches)
     # No path stays connected that begins or ends in pieces.
     whole = (straight.report.path.state[[0, -1]] == Connectedness.CONNECTED).all()
-    plans = [(top, method) for top in tops[:PLANNED] for method in ("straight", "planned")]
-    for rank, ((_, k, candidate), method) in enumerate(plans):
+    schemes = DEFAULT_SCHEMES if scheme is None else (scheme,)
+    plans = [
+        (top, method, each)
+        for method in ("straight", "planned", "per map")
+        for each in schemes
+        for top in tops[: PLANNED if each == schemes[0] else 1]
+    ]
+    for rank, ((_, k, candidate), method, chosen) in enumerate(plans):
+        spotless = best is not None and best.report.spotless
         # What costs this much beside swell cannot be the best.
-        beaten = best is not None and best.report.spotless and candidate.cost_beside_swell >= best.cost
+        beaten = spotless and (method == "per map" or candidate.cost_beside_swell >= best.cost)
         plannable = whole and candidate.rows.shape[1] <= PLANNED_MAPS
-        if beaten or (method == "planned" and not plannable):
+        if beaten or (method != "straight" and not plannable):
             continue
         pairs = searches[k].pairs(candidate)
         if backwards:
             pairs = reversed_pairs(final, initial, pairs)
-        morph = morph_of_pairs(initial, final, pairs, scheme)
+        try:
+            morph = morph_of_pairs(initial, final, pairs, chosen)
+        except IFSError:
+            # Flat maps have no logarithm.
+            if scheme is not None:
+                raise
+            continue
         planning = plan_path_steps(morph, None, frames, tolerance, method, threads)
         at = 0.7 + 0.3 * rank / len(plans)
         path = yield from parallel.part(planning, at, at + 0.3 / len(plans))
@@ -233,9 +253,10 @@ def _order(ifs: IFS) -> tuple:
 
 
 def path_cost(path: Path) -> float:
-    """What a path costs by swell and by going round."""
-    points = path.keys.value
-    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    """What a path costs by swell and by going round, each map for itself."""
+    maps = 1 if path.offset_keys is None else path.offset_keys.value.shape[2]
+    u, v, _ = spread(path.sample(np.linspace(0, 1, LENGTH_SAMPLES)), maps)
+    length = float(np.hypot(np.diff(u, axis=0), np.diff(v, axis=0)).sum(axis=0).mean())
     check = path.report.path
     return WORST * check.most_swell + MEAN * check.mean_swell + LONGER * (length / math.sqrt(2) - 1)
 

@@ -25,8 +25,10 @@ def _draw():
     gpu.state.blend_set("ALPHA")
     frames = fcurves.key_frames(owner)
     if frames:
-        curve = fcurves.sample_path(owner, locus_space.path_samples(frames))[:, :2]
-        line = locus_space.to_region(image, region, curve)
+        places = fcurves.sample_path(owner, locus_space.path_samples(frames))
+        for own in _own_paths(places):
+            drawing.lines(locus_space.to_region(image, region, own), LINE, scale, "LINE_STRIP")
+        line = locus_space.to_region(image, region, places[:, :2])
         drawing.lines(line, EDGE, 5 * scale, "LINE_STRIP")
         drawing.lines(line, LINE, 2.5 * scale, "LINE_STRIP")
         keys = locus_space.to_region(image, region, fcurves.sample_path(owner, frames)[:, :2])
@@ -41,6 +43,12 @@ def _draw():
     drawing.lines(arms, EDGE, 4 * scale)
     drawing.lines(arms, CURRENT, 2 * scale)
     gpu.state.blend_set("NONE")
+
+
+def _own_paths(places) -> list:
+    """Places (F, 2) of each map that leaves the path."""
+    offsets = places[:, 3:].reshape(len(places), 2, -1)
+    return [places[:, :2] + own for own in np.moveaxis(offsets, 2, 0) if own.any()]
 
 
 def register():

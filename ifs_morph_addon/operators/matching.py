@@ -8,7 +8,7 @@ from ...core.ifs import IFSError
 from ...core.matching import BUDGET, match_steps
 from ...core.morph import SCHEMES
 from .. import pairs
-from ..conversion import core_name, shape_ifs, tolerance
+from ..conversion import core_name, identifier, shape_ifs, tolerance
 from ..property_options import window_held
 from ..tasks import LongTask
 from .path import key_path, keying_problem, tell
@@ -49,7 +49,7 @@ class _Match(LongTask):
             max(2, settings.path.frame_end - settings.path.frame_start + 1),
             tolerance(settings),
             locked,
-            scheme=core_name(settings.scheme, SCHEMES),
+            scheme=None if _is_open(settings) else core_name(settings.scheme, SCHEMES),
             budget=WORK[settings.matching.budget],
             found=self._found,
         )
@@ -77,7 +77,14 @@ class _Match(LongTask):
         locks = tuple((pairs.text_of(pair.initial), pairs.text_of(pair.final)) in held for pair in match.pairs)
         with window_held(owner):
             pairs.write(matching, match.pairs, locks)
+            if _is_open(owner.ifs_morph):
+                owner.ifs_morph.scheme = identifier(match.morph.scheme)
             self.keep(owner, match)
+
+
+def _is_open(settings) -> bool:
+    """Whether the scheme may be another than the one chosen."""
+    return settings.matching.choose_scheme and settings.scheme != identifier("elementwise")
 
 
 class IFSMORPH_OT_morph(_Match, bpy.types.Operator):

@@ -10,7 +10,7 @@ import bpy
 
 from ...core.ifs import IFSError
 from .. import preparation
-from ..conversion import morph_of
+from ..conversion import frame_of, morph_of
 from . import image, materials, points
 
 KINDS = {"IMAGE": image, "POINTS": points}
@@ -116,7 +116,7 @@ def _draw(owner, evaluated, output, for_render) -> None:
 
     try:
         morph = morph_of(settings)
-        frame = morph.at(*settings.uv, settings.swell)
+        frame = frame_of(settings, morph)
         frame.require_attractor()
         show(morph, frame)
         _tell(owner, "")

@@ -6,6 +6,7 @@ from .. import fcurves, live, locus_picture, outputs, preparation
 from ..conversion import MOST_RECURRENT, has_pairs, pairs_problem, path_fingerprint, shape_problem
 from .files import draw_file_buttons
 from .pairs import IFSMORPH_PT_pairs
+from .path import IFSMORPH_PT_offsets, IFSMORPH_PT_path
 from .presets import IFSMORPH_PT_output_presets
 from .text import sentence
 
@@ -57,6 +58,9 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
         column = layout.column()
         column.use_property_decorate = False
         column.prop(settings, "scheme")
+        row = column.row()
+        row.active = settings.scheme != "ELEMENTWISE"
+        row.prop(settings.matching, "choose_scheme")
         column = layout.column(align=True)
         column.prop(settings, "uv", index=0, text="U")
         column.prop(settings, "uv", index=1, text="V")
@@ -305,30 +309,6 @@ def draw_locus_state(layout, context) -> None:
     sentence(layout, context, text, icon="INFO")
 
 
-class IFSMORPH_PT_path(_Panel, bpy.types.Panel):
-    """The path through the locus."""
-
-    bl_label = "Path"
-    bl_parent_id = "IFSMORPH_PT_main"
-
-    def draw(self, context):
-        """Draw the settings and the buttons."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        path = context.object.ifs_morph.path
-        layout.prop(path, "method")
-        column = layout.column(align=True)
-        column.prop(path, "frame_start")
-        column.prop(path, "frame_end")
-        column = layout.column(align=True)
-        column.operator("ifs_morph.plan_path", icon="ANIM")
-        column.operator("ifs_morph.key_straight", icon="IPO_LINEAR")
-        row = layout.row(align=True)
-        row.operator("ifs_morph.check_path", icon="CHECKMARK")
-        row.operator("ifs_morph.clear_path", icon="X")
-
-
 class IFSMORPH_PT_output(_Panel, bpy.types.Panel):
     """What the attractor becomes."""
 
@@ -422,6 +402,7 @@ CLASSES = (
     IFSMORPH_PT_winding,
     IFSMORPH_PT_locus,
     IFSMORPH_PT_path,
+    IFSMORPH_PT_offsets,
     IFSMORPH_PT_output,
     IFSMORPH_PT_window,
 )

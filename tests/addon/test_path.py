@@ -31,6 +31,13 @@ def evaluated(owner, frame, subframe=0.0):
     return (*settings.uv, settings.swell)
 
 
+def evaluated_offsets(owner):
+    """Offsets (2, 3) of three maps as Blender evaluates them at the current frame."""
+    settings = owner.evaluated_get(bpy.context.evaluated_depsgraph_get()).ifs_morph
+    assert not any([*settings.offset_u[3:], *settings.offset_v[3:]])
+    return np.array([settings.offset_u[:3], settings.offset_v[:3]])
+
+
 def morph_of(owner, extension):
     return extension.ifs_morph_addon.conversion.morph_of(owner.ifs_morph)
 
@@ -50,9 +57,11 @@ def test_keys_give_the_planned_path(owner, extension, method):
     path = planned(owner, extension, method)
     for frame in range(FIRST, LAST):
         for subframe in (0.0, 0.25, 0.7):
-            expected = path.at((frame + subframe - FIRST) / (LAST - FIRST))
+            expected = path.sample(np.array([(frame + subframe - FIRST) / (LAST - FIRST)]))[0]
             # Blender stores a handle in single precision and finds the curve's parameter by its time.
-            np.testing.assert_allclose(evaluated(owner, frame, subframe), expected, atol=3e-5)
+            np.testing.assert_allclose(evaluated(owner, frame, subframe), expected[:3], atol=3e-5)
+            offsets = expected[3:] if method == "per map" else np.zeros(6)
+            np.testing.assert_allclose(evaluated_offsets(owner), offsets.reshape(2, 3), atol=3e-5)
     assert evaluated(owner, FIRST - 2) == (0, 0, 0)
     assert evaluated(owner, LAST) == (1, 1, 0)
     assert evaluated(owner, LAST + 5) == (1, 1, 0)
@@ -270,3 +279,73 @@ def test_gap_resolution_reaches_the_plan(owner, extension):
     path = plan_path(morph_of(owner, extension), None, LAST - FIRST + 1, 1 / 50, "straight unswollen")
     assert owner.ifs_morph.path.report == path.report.text()
     assert "1/50" in owner.ifs_morph.path.report
+
+
+@pytest.fixture
+def own_paths(owner):
+    """The object with a path for each map, where no common one stays connected."""
+    bpy.ops.ifs_morph.load_shape(end="INITIAL", shape="terdragon")
+    owner.ifs_morph.path.method = "PER_MAP"
+    owner.ifs_morph.path.frame_end = 120
+    assert bpy.ops.ifs_morph.plan_path() == {"FINISHED"}
+    return owner
+
+
+def test_paths_of_their_own_are_shown(own_paths, extension):
+    """What a frame shows is what the same place shows when it is not keyed, and not the place without the offsets."""
+    bpy.context.scene.frame_set(60)
+    settings = own_paths.ifs_morph
+    place = extension.ifs_morph_addon.fcurves.sample_path(own_paths, [60])[0]
+    assert np.abs(place[3:]).max() > 0.02
+    shown = content(own_paths)
+    settings.output.fit_window = False
+    bpy.ops.ifs_morph.clear_path()
+    settings.uv, settings.swell = place[:2], place[2]
+    show()
+    assert content(own_paths) != shown
+    settings.offset_u, settings.offset_v = place[3:].reshape(2, -1)
+    show()
+    assert content(own_paths) == shown
+
+
+def test_what_is_shown_has_each_map_at_its_own_place(own_paths, extension):
+    bpy.context.scene.frame_set(60)
+    evaluated = own_paths.evaluated_get(bpy.context.evaluated_depsgraph_get()).ifs_morph
+    morph = morph_of(own_paths, extension)
+    place = extension.ifs_morph_addon.fcurves.sample_path(own_paths, [60])[0]
+    u, v = place[0] + place[3:6], place[1] + place[3 + 32 : 6 + 32]
+    found = extension.ifs_morph_addon.conversion.frame_of(evaluated, morph)
+    np.testing.assert_allclose(found.maps, morph.at(u, v, place[2]).maps, atol=1e-6)
+
+
+def test_every_frame_of_paths_of_their_own_is_in_one_piece(own_paths):
+    assert "118 frames, all in one piece" in own_paths.ifs_morph.path.report
+    assert "a path of its own" in own_paths.ifs_morph.path.report
+
+
+@pytest.mark.parametrize("operator", ["clear_path", "key_straight"])
+def test_another_path_takes_those_of_the_maps_away(own_paths, extension, operator):
+    assert len(extension.ifs_morph_addon.compat.fcurves(own_paths)) == 3 + 6
+    getattr(bpy.ops.ifs_morph, operator)()
+    bpy.context.scene.frame_set(60)
+    assert not evaluated_offsets(own_paths).any()
+    assert extension.ifs_morph_addon.fcurves.sample_path(own_paths, [60]).shape == (1, 3)
+
+
+def test_offsets_can_be_set_and_keyed_by_hand(owner, extension):
+    before = content(owner)
+    owner.ifs_morph.offset_u[0] = 0.3
+    show()
+    assert content(owner) != before
+    owner.keyframe_insert("ifs_morph.offset_u", index=0, frame=FIRST)
+    owner.ifs_morph.offset_u[0] = 0.0
+    assert extension.ifs_morph_addon.fcurves.sample_path(owner, [FIRST])[0, 3] == pytest.approx(0.3)
+
+
+def test_offsets_of_more_maps_than_can_be_stored_are_refused(owner, extension):
+    keys = extension.core.curve.Keys(np.array([0.0, 1.0]), *np.zeros((3, 2, 2, 33)))
+    path = planned(owner, extension, "straight")
+    path = type(path)(path.keys, path.swell_keys, keys, path.report)
+    with pytest.raises(extension.core.ifs.IFSError, match="33 maps, and 32 at most"):
+        extension.ifs_morph_addon.fcurves.write_path(owner, path, FIRST, LAST)
+    assert not extension.ifs_morph_addon.fcurves.has_path(owner)

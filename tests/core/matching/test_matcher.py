@@ -130,6 +130,32 @@ def test_all_of_a_match_can_be_locked():
     assert again.pairs == found.pairs
 
 
+def test_pairs_that_no_common_path_joins_get_paths_of_their_own():
+    """Map k to map k, the terdragon swells by a quarter on its way to the gasket, wherever (u,v) goes.
+
+    With next to no budget no other pairs are found that would mend it.
+    """
+    locked = tuple(Pair((k,), (k,)) for k in range(3))
+    found = match(SHAPES["terdragon"], SHAPES["gasket"], frames=120, locked=locked, budget=100)
+    assert found.pairs == locked
+    assert found.path.offset_keys is not None
+    assert found.report.disconnected == 0
+    assert found.report.most_swell < 0.05
+    for t in np.linspace(0, 1, 120)[::12]:
+        assert not in_pieces(found.morph.at(*found.path.at(t)).maps, 1 / 300)
+
+
+def test_an_open_scheme_is_no_worse_than_one_that_is_chosen():
+    locked = tuple(Pair((k,), (k,)) for k in range(3))
+    ends = SHAPES["gasket relative"], SHAPES["turned gasket"]
+    chosen = {scheme: match(*ends, frames=24, locked=locked, scheme=scheme) for scheme in ("polar", "log-polar")}
+    assert [each.morph.scheme for each in chosen.values()] == ["polar", "log-polar"]
+    found = match(*ends, frames=24, locked=locked)
+    best = min(chosen.values(), key=lambda each: (each.report.disconnected, each.cost))
+    assert (found.report.disconnected, found.cost) <= (best.report.disconnected, best.cost)
+    assert found.morph.scheme == best.morph.scheme
+
+
 def test_a_locked_piece_splits_its_map():
     locked = [Pair((1, 0), (2,))]
     found = match(SHAPES["spiral"], SHAPES["gasket"], frames=24, locked=locked, budget=20_000)
