@@ -8,8 +8,9 @@ from __future__ import annotations
 from contextlib import suppress
 from functools import partial
 from hashlib import sha256
+from zlib import crc32
 
-from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
 
 
 class KernelCache(FunctionCache):
@@ -28,6 +29,7 @@ class KernelCache(FunctionCache):
     def __init__(self, function, folder: str, stamp: str) -> None:
         self._impl_class = partial(_Files, place=_Place(function, folder, stamp))
         super().__init__(function)
+        self._cache_file = _CacheFile(folder, self._impl.filename_base, stamp)
 
     def load_overload(self, signature, target_context):
         """The kept kernel, or None where there is none or it cannot be read."""
@@ -42,6 +44,19 @@ class KernelCache(FunctionCache):
         """Keep a kernel; one that cannot be kept, on a full disk say, is compiled again the next time."""
         with suppress(OSError):
             super().save_overload(signature, data)
+
+
+class _CacheFile(IndexDataCacheFile):
+    """Names a kernel's file after its arguments, so that processes that compile at once do not mix up theirs.
+
+    Numba counts the files, and two processes may count to the same number. What is lost here is at worst one's line in
+    the index, and that kernel is compiled again.
+    """
+
+    def save(self, key, data) -> None:
+        name = self._data_name(crc32(repr(key).encode()))
+        self._save_data(name, data)
+        self._save_index({**self._load_index(), key: name})
 
 
 class _Files(CompileResultCacheImpl):

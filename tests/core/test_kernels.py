@@ -91,6 +91,20 @@ def test_a_kernel_is_compiled_once_until_a_source_changes(package, tmp_path):
     assert again() == [54, *miss], "what cannot be read is compiled again"
 
 
+def test_kernels_that_two_processes_keep_at_once_are_not_mixed_up(tmp_path):
+    from core.kernel_cache import _CacheFile
+
+    files = [_CacheFile(str(tmp_path), "kernel", "stamp") for _ in range(2)]
+    index = tmp_path / "kernel.nbi"
+    files[0].save(("integers",), "for integers")
+    first = index.read_bytes()
+    index.unlink()  # as the second process found it, before the first one was done
+    files[1].save(("numbers",), "for numbers")
+    assert files[0].load(("integers",)) is None
+    index.write_bytes(first)
+    assert files[0].load(("integers",)) == "for integers"
+
+
 def test_kernels_work_where_nothing_can_be_written(package):
     shutil.rmtree(package / "__pycache__", ignore_errors=True)
     (package / "__pycache__").touch()
