@@ -1,6 +1,7 @@
 """Pictures and points of recurrent IFSs, against all allowed words and against the chaos game as one writes it down."""
 
 import random
+from functools import cache
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from core.raster import TOTAL_MASS, render
 from core.shapes import SHAPES
 from core.words import unit_maps
 from tests.core.picture_reference import coverage, farthest, pixels, shifted, to_pixels
+from tests.core.reference import at, children, norms
 
 SIZE = (160, 120)
 
@@ -48,20 +50,18 @@ def allowed_points(ifs, window, fineness, first=None):
     """Return points (P, 2) in pixels, one in each piece of an allowed word of less than `fineness` pixels."""
     center, radius = ifs.enclosing_disc
     limit = fineness * (window[2] - window[0]) / SIZE[0] / (2 * radius)
-    words = [(ifs.maps[i], i) for i in range(ifs.count) if first in (None, i)]
-    found = []
-    while words:
-        word, last = words.pop()
-        if np.linalg.norm(word[:, :2], 2) <= limit:
-            found.append(word[:, :2] @ center + word[:, 2])
-            continue
-        for k in range(ifs.count):
-            if ifs.transitions[k, last] > 0:
-                shift = word[:, :2] @ ifs.maps[k][:, 2] + word[:, 2]
-                words.append((np.column_stack([word[:, :2] @ ifs.maps[k][:, :2], shift]), k))
-    return to_pixels(np.array(found), SIZE, window)
+    last = np.arange(ifs.count) if first is None else np.array([first])
+    words, found = ifs.maps[last], []
+    while len(words):
+        short = norms(words) <= limit
+        found.append(at(words[short], center))
+        follows = ifs.transitions.T[last[~short]].ravel() > 0
+        words = children(words[~short], ifs.maps)[follows]
+        last = np.tile(np.arange(ifs.count), np.count_nonzero(~short))[follows]
+    return to_pixels(np.concatenate(found), SIZE, window)
 
 
+@cache
 def game(ifs, count, seed=1):
     """Return points (count, 2) of the chaos game, and the map that led to each."""
     chance, letter = random.Random(seed), int(np.argmax(ifs.weights))
@@ -200,7 +200,7 @@ def test_points_lie_on_the_attractor_as_often_as_the_game_comes_by(name):
     places = to_pixels(cloud.position.astype(float), SIZE, window)
     distances, _ = cKDTree(allowed_points(ifs, window, 0.3)).query(places)
     assert distances.max() < 0.4
-    points, letters = game(ifs, 100_000)
+    points, letters = game(ifs, 150_000)
     shares = np.bincount(letters, minlength=ifs.count) / len(letters)
     assert np.bincount(cloud.attractorlet, minlength=ifs.count) / 40_000 == pytest.approx(shares, abs=0.012)
     assert places.mean(axis=0) == pytest.approx(to_pixels(points, SIZE, window).mean(axis=0), abs=0.7)
