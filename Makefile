@@ -27,7 +27,7 @@ demo: $(READY) ## morph, plan and render a scene; SCENE=... FRAMES=... SIZE=... 
 	@$(PYTHON) -m demo_scenes.render \
 	    $(if $(SCENE),--scene "$(SCENE)") $(if $(FRAMES),--frames $(FRAMES)) $(if $(SIZE),--size $(SIZE))
 
-figures: $(READY) ## draw the paper's figures and its table of timings
+figures: $(READY) ## draw the paper's figures, its table of timings, and what matching adds
 	@$(PYTHON) -m demo_scenes.figures
 
 test: $(READY) ## run the tests, under Blender 5.2

@@ -1,4 +1,4 @@
-"""Draw Figures 3 to 7 of Burch & Hart 1997 and make Table 1 anew, from this project's own computations.
+"""Draw Figures 3 to 7 of Burch & Hart 1997, make Table 1 anew, and show what matching adds, by own computations.
 
     python -m demo_scenes.figures
 
@@ -10,14 +10,17 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
 from core.connectedness import Connectedness, connectedness, index_buffer, object_based
 from core.ifs import IFS
 from core.locus import Locus, compute_locus
+from core.matching import Pair, match, morph_of_pairs
 from core.morph import Morph
 from core.path import Path as MorphPath
 from core.path import plan_path
 from core.raster import fit_window, render
+from core.shading import attractorlet_colors
 from core.shapes import SHAPES
 
 from .pictures import plot_path, plt
@@ -25,6 +28,11 @@ from .pictures import plot_path, plt
 OUTPUT = Path(__file__).parents[1] / "out" / "figures"
 COLUMNS = np.linspace(0, 1, 9)
 CELL = 360
+
+WIDTH = 1.35
+"""Of the part of the plane that a cell of the matching shows."""
+
+GAMMA = 1 / 2.2
 
 PAPER_TABLE = {75: 0.47850, 150: 0.48750, 300: 0.49000, 600: 0.49815}
 """Smallest scale that the paper's index buffer called connected, by resolution (Table 1)."""
@@ -48,6 +56,7 @@ def main() -> None:
     _strip("figure_5", "Figure 5: straight, connectedness ignored", morph, diagonal)
     _strip("figure_6", "Figure 6: guided through the locus", morph, path.sample(COLUMNS))
     _locus(locus, path)
+    _matching()
     print(path.report.text())
     _table()
     print(f"See {OUTPUT.relative_to(Path.cwd())}/")
@@ -79,6 +88,42 @@ def _locus(locus: Locus, path: MorphPath) -> None:
     figure.savefig(OUTPUT / "figure_7.png", dpi=110)
     plt.close(figure)
     print("- Figure 7: the connectedness locus")
+
+
+def _matching() -> None:
+    """Three morphs of two shapes with different numbers of maps and orientations, one below the other."""
+    initial, final = SHAPES["Hata tree"], SHAPES["Gosper flowsnake"]
+    found = match(initial, final)
+    given = [Pair((k % initial.count,), (k % final.count,)) for k in range(max(initial.count, final.count))]
+    diagonal = np.stack([COLUMNS, COLUMNS, 0 * COLUMNS], axis=1)
+    rows = {
+        "map by map, element by element": (morph_of_pairs(initial, final, given, "elementwise"), diagonal),
+        "map by map, by polar decomposition": (morph_of_pairs(initial, final, given), diagonal),
+        "matched": (found.morph, found.path.sample(COLUMNS)),
+    }
+    figure, axes = plt.subplots(len(rows), len(COLUMNS), figsize=(12, 5.2), layout="constrained")
+    for line, (title, (morph, places)) in zip(axes, rows.items(), strict=True):
+        line[0].set_title(title, loc="left", fontsize=10)
+        for axis, place in zip(line, places, strict=True):
+            _draw_centered(axis, morph.at(*place))
+    target = OUTPUT / "matching.png"
+    figure.savefig(target, dpi=80)
+    plt.close(figure)
+    Image.open(target).convert("RGB").quantize(64).save(target, optimize=True)
+    print("- Matching")
+
+
+def _draw_centered(axis, shape: IFS) -> None:
+    """Draw a shape's attractorlets on axes, and say below if it is in pieces."""
+    x0, y0, x1, y1 = shape.bounds
+    x, y = (x0 + x1) / 2 - WIDTH / 2, (y0 + y1) / 2 - WIDTH / 2
+    labels = render(shape, (CELL, CELL), (x, y, x + WIDTH, y + WIDTH), "attractorlet")
+    colors = np.concatenate([np.ones((1, 4)), attractorlet_colors(shape.count)])
+    axis.imshow(colors[labels] ** [GAMMA, GAMMA, GAMMA, 1], origin="lower")
+    axis.set(xticks=[], yticks=[], frame_on=False)
+    state = connectedness(shape).state
+    is_whole = state == Connectedness.CONNECTED
+    axis.set_xlabel("" if is_whole else state.name.lower(), fontsize=9, color="#c03a10")
 
 
 def _table() -> None:

@@ -76,6 +76,8 @@ class IFSMORPH_OT_add(bpy.types.Operator):
             self._frame(context, owner)
         if self.add_light and self.kind == "POINTS" and not _is_lit(context.scene):
             _light(context)
+        if self.kind == "IMAGE":
+            _show_textures(context.space_data)
         return {"FINISHED"}
 
     def _frame(self, context, owner):
@@ -92,6 +94,12 @@ class IFSMORPH_OT_add(bpy.types.Operator):
         camera.rotation_euler = math.pi / 2, 0.0, 0.0
         context.collection.objects.link(camera)
         context.scene.camera = camera
+
+
+def _show_textures(space):
+    """Have a solid viewport show textures: an image plane would be plain gray."""
+    if space is not None and space.type == "VIEW_3D" and space.shading.type == "SOLID":
+        space.shading.color_type = "TEXTURE"
 
 
 def _is_lit(scene):

@@ -59,7 +59,6 @@ def steps():
     """One thing after the other; yields whenever Blender is to draw."""
     viewport = area("VIEW_3D")
     viewport.spaces.active.show_region_ui = True
-    viewport.spaces.active.shading.color_type = "TEXTURE"
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     yield
@@ -73,6 +72,7 @@ def steps():
     with in_viewport():
         bpy.ops.view3d.view_selected()
     yield
+    assert viewport.spaces.active.shading.color_type == "TEXTURE", "The plane is gray."
     picture("2_added")
 
     morph().ifs_morph.path.frame_end = 120
