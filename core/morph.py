@@ -10,6 +10,7 @@ import numpy as np
 
 from .affine import determinant, polar, rotation, singular_values
 from .ifs import IFS, IFSError
+from .joining import over_one_graph
 
 SCHEMES = ("elementwise", "polar", "log-polar")
 """How linear parts are interpolated: entry by entry (Fig. 3), by polar decomposition (Eq. 6), or that with the
@@ -34,7 +35,7 @@ class Morph:
     Parameters
     ----------
     initial, final : IFS
-        With the same number of maps.
+        With the same number of maps. Where they allow different transitions, maps are taken apart (see `joining`).
     scheme : str
         One of `SCHEMES`.
     winding : (N,) of int, optional
@@ -47,9 +48,13 @@ class Morph:
 
     Attributes
     ----------
+    initial, final : IFS
+        With N maps each: those given, or parts of them.
+    part_of : (N,) int
+        The map given that each is, or is a part of.
     flips : tuple of int
-        Maps that reflect at one end only. No path of non-singular maps of the plane joins such ends: the map is
-        flattened to a line half-way, as if turned over about its mirror axis and projected.
+        Maps given that reflect at one end only, or have a part that does. No path of non-singular maps of the plane
+        joins such ends: the map is flattened to a line half-way, as if turned over about its mirror axis and projected.
     turning : (N,)
         Radians by which each map turns on the way, counter-clockwise positive; not for the scheme ``elementwise``.
     """
@@ -59,8 +64,9 @@ class Morph:
 
     def __init__(self, initial: IFS, final: IFS, scheme: str = "polar", winding: np.ndarray | None = None) -> None:
         winding = self._accept(initial, final, scheme, winding)
+        initial, final = self.initial, self.final
         reflects = _orientations(initial.linear, final.linear)
-        self.flips = tuple(int(i) for i in np.flatnonzero(reflects[0] != reflects[1]))
+        self.flips = tuple(np.unique(self.part_of[reflects[0] != reflects[1]]).tolist())
         self._reflects = reflects
         if scheme != "elementwise":
             start, _, self._initial_stretch = polar(initial.linear, reflects[0])
@@ -76,7 +82,7 @@ class Morph:
                 values = singular_values(ifs.linear)
                 for i in np.flatnonzero(values[:, 1] <= SINGULAR * values[:, 0]):
                     raise IFSError(
-                        f"Map {i + 1} of the {end} shape is flat, and a flat stretch has no logarithm; "
+                        f"Map {self.part_of[i] + 1} of the {end} shape is flat, and a flat stretch has no logarithm; "
                         "use the polar scheme or give the map some height."
                     )
                 stretch[:] = _of_eigenvalues(stretch, np.log)
@@ -100,7 +106,8 @@ class Morph:
         whole = np.isfinite(winding).all() and np.array_equal(winding, np.round(winding))
         if winding.shape != (initial.count,) or not whole:
             raise IFSError(f"Winding must be {initial.count} whole numbers of turns, one a map.")
-        self.initial, self.final, self.scheme, self.winding = initial, final, scheme, winding.astype(int)
+        self.initial, self.final, self.part_of = over_one_graph(initial, final)
+        self.scheme, self.winding = scheme, winding.astype(int)[self.part_of]
         return self.winding
 
     @property
@@ -172,7 +179,7 @@ class Morph:
     def transitions_at(self, u: np.ndarray | float) -> np.ndarray:
         """Transitions (..., N, N) at u (...): interpolated between the ends, held beyond them.
 
-        So between two ends with different graphs a map may be applied after another where either end allows it.
+        Which of them are allowed is the same all the way.
         """
         ones = np.ones((self.count, self.count))
         start, end = (ones if ifs.transitions is None else ifs.transitions for ifs in (self.initial, self.final))

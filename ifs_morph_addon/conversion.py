@@ -61,7 +61,13 @@ def shape_colors(shape) -> np.ndarray:
 
 
 def frame_colors(settings) -> np.ndarray:
-    """Color and alpha (N, 4) of each attractorlet at the settings' u, between those of the two shapes."""
+    """Color and alpha (N, 4) of each attractorlet at the settings' u, between those of the two shapes.
+
+    Raises
+    ------
+    IFSError
+        If there is no morph.
+    """
     start, end = shape_colors(settings.initial), shape_colors(settings.final)
     if has_pairs(settings):
         # A piece has the color of the map that it is a part of.
@@ -71,7 +77,7 @@ def frame_colors(settings) -> np.ndarray:
     colors = np.ones((len(start), 4), dtype=np.float32)
     # Colors that both shapes share stay the same to the bit, so that nothing is written anew for them.
     colors[:, :3] = np.where(start == end, start, (1 - share) * start + share * end)
-    return colors
+    return colors[morph_of(settings).part_of]
 
 
 def shape_ifs(shape) -> IFS:

@@ -23,6 +23,7 @@ CORE = (
     "grammar",
     "words",
     "shapes",
+    "joining",
     "morph",
     "heap",
     "overlap",

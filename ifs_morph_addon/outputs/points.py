@@ -119,7 +119,7 @@ def signature(owner, settings, morph, frame) -> tuple:
     if frame is None:
         return ()
     output = settings.output
-    chances = address_transitions(settings, morph)
+    chances = address_transitions(morph)
     chances = None if chances is None else chances.tobytes()
     still = output.point_count, morph.weights_at(0.5).tobytes(), chances, _colors(settings).tobytes()
     return frame.maps.tobytes(), (*output.window, *output.depth), output.point_radius, still
@@ -135,7 +135,7 @@ def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
     output = settings.output
     if not np.isfinite((*output.window, *output.depth)).all():
         raise IFSError("The window holds NaN; fit it again, or give it four numbers.")
-    weights, chances = morph.weights_at(0.5), address_transitions(settings, morph)
+    weights, chances = morph.weights_at(0.5), address_transitions(morph)
     places = origin_and_unit(output.window, output.depth)
     points = point_cloud(frame, output.point_count, weights, placing=places, address_transitions=chances)
     count = len(points.position)
@@ -154,16 +154,11 @@ def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
     return mesh
 
 
-def address_transitions(settings, morph) -> np.ndarray | None:
-    """Transitions (N, N) by which points keep their addresses all along the way; None if maps follow each other freely.
-
-    At an end that allows less than the way does, the points are those of that end.
-    """
+def address_transitions(morph) -> np.ndarray | None:
+    """Transitions (N, N) by which points keep their addresses all along the way; None if all follow all."""
     if morph.initial.transitions is morph.final.transitions is None:
         return None
-    u = settings.uv[0]
-    here, middle_of_way = morph.transitions_at(u), morph.transitions_at(0.5)
-    return middle_of_way if np.array_equal(here > 0, middle_of_way > 0) else here
+    return morph.transitions_at(0.5)
 
 
 def _has(mesh, *names) -> bool:

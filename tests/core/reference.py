@@ -3,7 +3,8 @@
 from itertools import combinations
 
 import numpy as np
-from scipy.sparse.csgraph import minimum_spanning_tree
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
 from scipy.spatial import cKDTree
 
 
@@ -37,6 +38,48 @@ def cover(maps, limit, most=np.inf):
             return None
         words = children(words[~short], maps)
     return tuple(np.concatenate(parts) for parts in zip(*found, strict=True))
+
+
+def allowed_points(ifs, most=6000):
+    """Return points (M, 2) by allowed words, one for each piece of the attractor, and the spacing.
+
+    Every point of the attractor is within the spacing of one of these, and every one of these of the attractor. The
+    spacing is about the finest that takes no more than `most` points.
+    """
+    transitions = np.ones((ifs.count, ifs.count)) if ifs.transitions is None else ifs.transitions
+    start = fixed_point(ifs.maps[0])
+    words, last, fine = ifs.maps, np.arange(ifs.count), None
+    while True:
+        sizes = norms(words)
+        if (sizes < 1).all():
+            # As in `dense`.
+            reach = (np.linalg.norm(at(words, start) - start, axis=1) / (1 - sizes)).max()
+            fine = at(words, start), sizes.max() * reach
+        split = sizes > 0.7 * sizes.max()
+        inner, outer = np.nonzero(transitions[:, last[split]])
+        if fine is not None and (np.count_nonzero(~split) + len(inner) > most or sizes.max() < 1e-9):
+            return fine
+        longer = children(words[split], ifs.maps).reshape(-1, ifs.count, 2, 3)[outer, inner]
+        words, last = np.concatenate([words[~split], longer]), np.concatenate([last[~split], inner])
+
+
+def groups_within(points, apart):
+    """Return how many groups of points there are, any two next to each other in a group no further apart than this."""
+    pairs = cKDTree(points).query_pairs(apart, output_type="ndarray")
+    links = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), (len(points), len(points)))
+    return connected_components(links, directed=False)[0]
+
+
+def recurrent_in_pieces(ifs, tolerance, most=6000):
+    """Whether there is for certain a gap wider than the tolerance anywhere in the attractor of a recurrent IFS."""
+    points, spacing = allowed_points(ifs, most)
+    diameter = np.hypot(*np.ptp(points, axis=0)) + 2 * spacing
+    return groups_within(points, tolerance * diameter + 2 * spacing) > 1
+
+
+def hausdorff(first, second):
+    """Return the Hausdorff distance of two sets of points (M, 2)."""
+    return max(cKDTree(first).query(second)[0].max(), cKDTree(second).query(first)[0].max())
 
 
 def at(maps, points):
