@@ -1,21 +1,22 @@
 """Two recurrent IFSs written over one graph, so that a morph between them is continuous at its ends.
 
 Between two shapes that allow different transitions a morph needs those of both. But to allow at once what an end
-forbids would make the shape jump. So a map that other maps follow at one end than at the other becomes several, one
-for each set of followers, and what an end forbids is done there by a *detour*: a path through its graph that it
-allows. A detour from i to j takes the attractorlet of j to a part of that of i, which adds nothing to the attractor.
+forbids would make the shape jump. So a letter that others may follow at one end than at the other becomes several, one
+for each set of followers, and where an end forbids these, it has a *detour* there: a word that it allows from the one
+to the others. A detour from i to k takes the attractorlet of k to a part of that of i: it adds nothing to the shape.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
-from .affine import compose
+from .affine import compose, transform
 from .ifs import IFS
 
-Path = tuple[int, ...]
+Word = tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -26,13 +27,13 @@ class Part:
     ----------
     followers : (N,) bool
         The maps whose attractorlets it is applied to; follower k stands for all parts of map k.
-    paths : (tuple, tuple)
-        At each end, the letters of the word to apply, outermost first: (i,) the map itself, (i, j, ...) a detour, and
-        nothing where there is none. Then the part grows from a point.
+    words : (tuple, tuple)
+        At each end, the word to apply, the last letter first: (i,) the map itself, (i, j, ...) a detour, and nothing
+        where there is none. Then the part grows from a point.
     """
 
     followers: np.ndarray
-    paths: tuple[Path, Path]
+    words: tuple[Word, Word]
 
 
 def over_one_graph(initial: IFS, final: IFS) -> tuple[IFS, IFS, np.ndarray]:
@@ -68,50 +69,53 @@ def _parts(i: int, graphs: tuple[np.ndarray, np.ndarray], linear: tuple[np.ndarr
     for end in (0, 1):
         reflects = bool(np.linalg.det(linear[end][i]) < 0)
         only_here = rows[end] & ~rows[1 - end]
-        for path, followers in _detours(i, only_here, graphs[1 - end], linear[1 - end], reflects):
-            parts.append(Part(followers, ((i,), path) if end == 0 else (path, (i,))))
+        for word, followers in _detours(i, only_here, graphs[1 - end], linear[1 - end], reflects):
+            parts.append(Part(followers, ((i,), word) if end == 0 else (word, (i,))))
     return parts
 
 
 def _detours(
     i: int, wanted: np.ndarray, follows: np.ndarray, linear: np.ndarray, reflects: bool
-) -> list[tuple[Path, np.ndarray]]:
-    """Paths through a graph from i to all wanted letters (N,), and which of them each leads to; as few as can be.
+) -> list[tuple[Word, np.ndarray]]:
+    """Words from i to all wanted letters (N,), and which of these may follow each; as few words as can be.
 
-    Those first whose word reflects or not as it should; of these what leads to the most letters, then the shortest,
-    then the one whose word has the largest area.
+    Those first that reflect or not as they should; of these what most letters may follow, then the shortest, then the
+    one of the largest area.
     """
     determinants = np.linalg.det(linear)
-    # Paths by what decides where they can go on: their last letter, and whether they reflect.
+    # By what decides how they go on: their last letter, and whether they reflect.
     start = i, bool(determinants[i] < 0)
-    paths, newest = {start: (i,)}, {start: abs(determinants[i])}
+    words, newest = {start: (i,)}, {start: abs(determinants[i])}
     while newest:
-        reached: dict[tuple[int, bool], tuple[float, Path]] = {}
+        reached: dict[tuple[int, bool], tuple[float, Word]] = {}
         for (j, turned), area in newest.items():
             for k in np.flatnonzero(follows[j]).tolist():
                 state, further = (k, turned != bool(determinants[k] < 0)), area * abs(determinants[k])
-                if state not in paths and (state not in reached or further > reached[state][0]):
-                    reached[state] = further, (*paths[j, turned], k)
+                if state not in words and (state not in reached or further > reached[state][0]):
+                    reached[state] = further, (*words[j, turned], k)
         newest = {state: area for state, (area, _) in sorted(reached.items(), key=lambda each: -each[1][0])}
-        paths.update({state: reached[state][1] for state in newest})
+        words.update({state: reached[state][1] for state in newest})
     found, left = [], wanted.copy()
     while left.any():
-        gains = {state: np.count_nonzero(follows[state[0]] & left) for state in paths}
-        # Paths are in the order of their lengths, and of the areas.
+        gains = {state: np.count_nonzero(follows[state[0]] & left) for state in words}
+        # Words are in the order of their lengths, and of the areas.
         best = max(gains, key=lambda state: (gains[state] > 0, state[1] == reflects, gains[state]))
         if gains[best] == 0:
             found.append(((), left))
             break
-        found.append((paths[best], follows[best[0]] & left))
+        found.append((words[best], follows[best[0]] & left))
         left = left & ~follows[best[0]]
     return found
 
 
 def _end(ifs: IFS, end: int, parts: list[Part], part_of: np.ndarray) -> IFS:
     """An IFS made of parts (M,) of its maps, with the same attractor and measure."""
-    paths = [part.paths[end] for part in parts]
-    maps = [_word(ifs, path) if path else _point(ifs, i) for path, i in zip(paths, part_of.tolist(), strict=True)]
-    whole = np.array([len(path) == 1 for path in paths])
+    words = [part.words[end] for part in parts]
+    maps = [
+        reduce(compose, ifs.maps[list(word)]) if word else _point(ifs, i)
+        for word, i in zip(words, part_of.tolist(), strict=True)
+    ]
+    whole = np.array([len(word) == 1 for word in words])
     given = np.ones((ifs.count, ifs.count)) if ifs.transitions is None else ifs.transitions
     transitions = given[np.ix_(part_of, part_of)]
     transitions[:, ~whole] = 1.0
@@ -119,23 +123,13 @@ def _end(ifs: IFS, end: int, parts: list[Part], part_of: np.ndarray) -> IFS:
     return IFS(np.array(maps), ifs.weights[part_of] * whole, ifs.name, transitions)
 
 
-def _word(ifs: IFS, path: Path) -> np.ndarray:
-    """The composition (2, 3) of the maps along a path."""
-    composed = ifs.maps[path[0]]
-    for letter in path[1:]:
-        composed = compose(composed, ifs.maps[letter])
-    return composed
-
-
 def _point(ifs: IFS, i: int) -> np.ndarray:
     """The map (2, 3) that takes everything to a point of attractorlet i; raises IFSError without an attractor."""
     ifs.require_attractor()
-    path = [i]
-    while (following := int(np.argmax(ifs.follows[path[-1]]))) not in path:
-        path.append(following)
-    loop = path.index(following)
-    cycle = _word(ifs, tuple(path[loop:]))
+    word = [i]
+    while (following := int(np.argmax(ifs.follows[word[-1]]))) not in word:
+        word.append(following)
+    cycle = reduce(compose, ifs.maps[word[word.index(following) :]])
     point = np.linalg.solve(np.eye(2) - cycle[:, :2], cycle[:, 2])
-    if loop > 0:
-        point = compose(_word(ifs, tuple(path[:loop])), np.column_stack([np.zeros((2, 2)), point]))[:, 2]
-    return np.column_stack([np.zeros((2, 2)), point])
+    # Once more through the cycle it is the same.
+    return np.column_stack([np.zeros((2, 2)), transform(reduce(compose, ifs.maps[word]), point)])

@@ -12,12 +12,19 @@ from . import enclosure
 from .enclosure import POINT, enclosing_disc, mean_fixed_point, move_origin, shrinking_words
 from .gap import empty_search, measure_gap
 from .kernels import njit
-from .overlap import BUDGET, MEET, ROUNDING, SLACK, STACK, UNKNOWN, join, pair_test
+from .overlap import BUDGET, MEET, ROUNDING, SLACK, STACK, UNKNOWN, join
+from .recurrent_overlap import letter_discs, pieces_meet
 from .states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
 from .tree import CAPACITY, View, empty_tree, plant
 
 MOST_VERTICES = 48
 """Parts that the attractorlets may fall into before the search is given up."""
+
+FIRST_BUDGET = 256
+"""Pairs of pieces looked at for a pair of attractorlets, `overlap.BUDGET` where those that meet do not join it."""
+
+MOST_WORK = 12_000
+"""Pairs of pieces looked at in all, after which what is not known is left open."""
 
 
 @njit(nogil=True, cache=True)
@@ -81,10 +88,12 @@ def decide(tree, room, linear, translation, follows, view, tolerance, with_gap, 
             for k in range(2):
                 own_translation[v, k] = translation[of[v], k]
         plant(tree, own_linear, own_translation, np.zeros((vertices, 2)))
-        meets = np.full((vertices, vertices), -1, np.int8)
+        discs = letter_discs(own_linear, own_translation, allowed, view)
+        meets, known = np.full((vertices, vertices), UNKNOWN, np.int8), np.zeros((vertices, vertices), np.int64)
+        tree.used[1] = 0
         group = np.arange(vertices)
         everything = np.ones(vertices, np.bool_)
-        sure = join_meeting(tree, room, allowed, view, tolerance, meets, everything, group)
+        sure = join_meeting(tree, room, allowed, discs, view, tolerance, meets, known, everything, group)
         if vertices == count:
             for i in range(count):
                 labels[i] = group[i]
@@ -101,7 +110,7 @@ def decide(tree, room, linear, translation, follows, view, tolerance, with_gap, 
         for v in range(vertices):
             for k in range(vertices):
                 group[k] = k
-            if not join_meeting(tree, room, allowed, view, tolerance, meets, allowed[v], group):
+            if not join_meeting(tree, room, allowed, discs, view, tolerance, meets, known, allowed[v], group):
                 return UNDECIDED, 0.0, 2 * view.radius
             parts[v] = 0
             for k in range(vertices):
@@ -129,24 +138,24 @@ def decide(tree, room, linear, translation, follows, view, tolerance, with_gap, 
 
 
 @njit(nogil=True, cache=True)
-def join_meeting(tree, room, follows, view, tolerance, meets, among, group):
+def join_meeting(tree, room, follows, discs, view, tolerance, meets, known, among, group):
     """Join the groups (V,) of those `among` (V,) all letters whose pieces meet; whether nothing was left open.
 
-    What is found of pairs is kept in `meets` (V, V), -1 where nothing is known.
+    What is found of pairs is kept in `meets` (V, V), and in `known` (V, V) the budget that it was found with.
     """
     count = follows.shape[0]
-    first, second, key = room
-    no_corners = np.empty((0, 2))
-    for i in range(count):
-        for j in range(i + 1, count):
-            if not (among[i] and among[j]) or group[i] == group[j]:
-                continue
-            if meets[i, j] < 0:
-                meets[i, j] = pair_test(
-                    tree, follows, view, i, j, tolerance, no_corners, np.int64(BUDGET), first, second, key
-                )
-            if meets[i, j] == MEET:
-                join(group, i, j)
+    for budget in (FIRST_BUDGET, BUDGET):
+        for i in range(count):
+            for j in range(i + 1, count):
+                if not (among[i] and among[j]) or group[i] == group[j]:
+                    continue
+                if known[i, j] < budget and tree.used[1] < MOST_WORK:
+                    known[i, j] = budget
+                    meets[i, j] = pieces_meet(tree, follows, discs, view, i, j, tolerance, budget, room)
+                    if meets[i, j] != UNKNOWN:
+                        known[i, j] = BUDGET
+                if meets[i, j] == MEET:
+                    join(group, i, j)
     for i in range(count):
         for j in range(i + 1, count):
             if among[i] and among[j] and group[i] != group[j] and meets[i, j] == UNKNOWN:

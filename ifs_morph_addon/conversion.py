@@ -120,7 +120,7 @@ def _ifs(maps: bytes, weights: bytes, name: str, transitions: bytes | None, in_s
 def morph_of(settings) -> Morph:
     """The morph between an object's two shapes, made of its pairs if it has any; raises IFSError."""
     initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
-    if has_pairs(settings) and not (initial.is_recurrent or final.is_recurrent or is_in_space(settings)):
+    if has_pairs(settings) and not is_in_space(settings):
         return _paired_morph(initial, final, settings.scheme, current_pairs(settings))
     if initial.count != final.count and not is_in_space(settings):
         raise IFSError(
@@ -370,9 +370,7 @@ def match_problem(settings) -> str:
     if is_in_space(settings):
         return "Shapes in space cannot be matched; plan a path with the maps in their order instead."
     try:
-        for ifs in _require_attractors(settings):
-            if ifs.is_recurrent:
-                return "Recurrent shapes cannot be matched yet; plan a path with the maps in their order instead."
+        _require_attractors(settings)
     except (IFSError, ImportError) as error:
         return str(error)
     return ""

@@ -97,7 +97,7 @@ def fitted(initial: IFS, final: IFS, matching) -> tuple[Pair, ...] | None:
 
 @lru_cache(maxsize=16)
 def _fitted(initial: IFS, final: IFS, stored_pairs: tuple) -> tuple[Pair, ...] | None:
-    if any(ifs.is_recurrent or ifs.maps.shape[1:] != (2, 3) for ifs in (initial, final)):
+    if any(ifs.maps.shape[1:] != (2, 3) for ifs in (initial, final)):
         return None
     try:
         pairs = tuple(

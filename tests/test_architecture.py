@@ -28,6 +28,7 @@ CORE = (
     "heap",
     "overlap",
     "gap",
+    "recurrent_overlap",
     "recurrent",
     "decision",
     # Shapes in space, from their maps to their states.

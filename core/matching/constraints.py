@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..ifs import IFS, IFSError
-from .expansion import Word, is_cover
+from .expansion import Word, is_cover, parts
 from .pairs import Pair, Symmetry
 from .problem import Lock
 
@@ -33,9 +33,9 @@ def settled_words(ifs: IFS, name: str, words: Sequence[Word] | None, locked: Seq
         prefixes = {word[:length] for word in locked for length in range(1, len(word))}
         while split := [word for word in words if word in prefixes]:
             at = words.index(split[0])
-            words[at : at + 1] = [(*words[at], letter) for letter in range(ifs.count)]
+            words[at : at + 1] = parts(ifs, words[at])
     words = [tuple(int(letter) for letter in word) for word in dict.fromkeys(map(tuple, words))]
-    if any(not word or min(word) < 0 or max(word) >= ifs.count for word in words) or not is_cover(words, ifs.count):
+    if any(not word or min(word) < 0 or max(word) >= ifs.count for word in words) or not is_cover(ifs, words):
         raise IFSError(f"The words given for the {name} shape are not all of its pieces, each once; give every piece.")
     for word in locked:
         if tuple(word) not in words:

@@ -27,28 +27,33 @@ def word_weight(ifs: IFS, word: Word) -> float:
     return float(np.prod(ifs.weights[list(word)]))
 
 
-def is_cover(words: list[Word], count: int) -> bool:
-    """Whether the words are all maps of a system of `count` maps, some of them split, some listed twice."""
+def parts(ifs: IFS, word: Word) -> list[Word]:
+    """The words that a word is split into: one for each letter that may follow its last one."""
+    following = np.flatnonzero(ifs.follows[word[-1]]) if word else range(ifs.count)
+    return [(*word, int(letter)) for letter in following]
+
+
+def is_cover(ifs: IFS, words: list[Word]) -> bool:
+    """Whether the words are all maps of a system, some of them split, some listed twice."""
     different = set(words)
     prefixes = {word[:length] for word in different for length in range(len(word))} | {()}
-    if prefixes & different:
-        return False
-    return all((*prefix, letter) in different | prefixes for prefix in prefixes for letter in range(count))
+    return different | prefixes == {()}.union(*(parts(ifs, prefix) for prefix in prefixes)) and not prefixes & different
 
 
 def split_to(ifs: IFS, count: int) -> list[Word]:
     """Words by splitting the largest piece again and again, while no more than `count` come of it."""
     words = [(i,) for i in range(ifs.count)]
-    if ifs.count == 1:
-        return words
-    while len(words) + ifs.count - 1 <= count:
-        sizes = [singular_values(word_map(ifs, word)[:, :2])[0] for word in words]
+    while True:
+        # A word that only one letter may follow gains nothing.
+        sizes = [singular_values(word_map(ifs, word)[:, :2])[0] if len(parts(ifs, word)) > 1 else 0.0 for word in words]
         # Sizes that differ by rounding alone are equal, and the first of them goes.
         largest = int(np.argmax(np.array(sizes) > max(sizes) * (1 - 1e-9)))
-        words[largest : largest + 1] = [(*words[largest], k) for k in range(ifs.count)]
-    return words
+        split = parts(ifs, words[largest])
+        if len(split) == 1 or len(words) + len(split) - 1 > count:
+            return words
+        words[largest : largest + 1] = split
 
 
 def split_all(ifs: IFS) -> list[Word]:
     """The words of two letters: every map split."""
-    return [(i, k) for i in range(ifs.count) for k in range(ifs.count)]
+    return [word for i in range(ifs.count) for word in parts(ifs, (i,))]

@@ -20,6 +20,7 @@ from .expansion import Word
 from .pairs import Pair, morph_of_pairs, reversed_pairs
 from .problem import Candidate, End, Problem
 from .problems import problems
+from .recurrent import problem_of
 from .scoring import MEAN, WORST
 from .search import GOOD, search_steps
 from .symmetry import symmetries
@@ -41,6 +42,9 @@ DEFAULT_SCHEMES = ("polar", "log-polar")
 
 PLANNED_MAPS = 9
 """With more maps than this a plan takes too long, and gains little over the straight line."""
+
+RECURRENT_MAPS = 2
+"""Maps that one of a recurrent morph counts for in that, for they take longer to decide."""
 
 LENGTH_SAMPLES = 241
 """Times between which paths are measured as if straight."""
@@ -187,7 +191,7 @@ def match_steps(
     ]
     best = None
     if free and scheme in (None, DEFAULT_SCHEMES[0]):
-        given = Problem(*ends, tolerance, (), threads)
+        given = problem_of(*ends, tolerance, (), threads)
         start = given.evaluate(given.starts()[:1])[0]
         best = as_match(naive, naive_morph, straight, start.cost_beside_swell, 0)
         if found is not None:
@@ -222,9 +226,7 @@ def match_steps(
     for rank, ((_, k, candidate), method, chosen) in enumerate(plans):
         spotless = best is not None and best.report.spotless
         # What costs this much beside swell cannot be the best.
-        beaten = spotless and (method == "per map" or candidate.cost_beside_swell >= best.cost)
-        plannable = whole and candidate.rows.shape[1] <= PLANNED_MAPS
-        if beaten or (method != "straight" and not plannable):
+        if spotless and (method == "per map" or candidate.cost_beside_swell >= best.cost):
             continue
         pairs = searches[k].pairs(candidate)
         if backwards:
@@ -235,6 +237,9 @@ def match_steps(
             # Flat maps have no logarithm.
             if scheme is not None:
                 raise
+            continue
+        plannable = whole and morph.count * (RECURRENT_MAPS if morph.is_recurrent else 1) <= PLANNED_MAPS
+        if method != "straight" and not plannable:
             continue
         planning = plan_path_steps(morph, None, frames, tolerance, method, threads)
         at = 0.7 + 0.3 * rank / len(plans)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -75,29 +76,29 @@ def pairs_from_plain(plain: Sequence[dict]) -> tuple[Pair, ...]:
 def morph_of_pairs(initial: IFS, final: IFS, pairs: Sequence[Pair], scheme: str = "polar") -> Morph:
     """The morph that pairs stand for, without any search.
 
-    Its ends have one map a pair, and the same attractors as the shapes given.
+    Its ends have one map a pair, or several where the shapes allow different transitions (see `joining`), and the same
+    attractors as the shapes given.
 
     Raises
     ------
     IFSError
         If a pair names a map that there is not, or a piece of a shape is in no pair.
     """
-    windings = [pair.winding or 0 for pair in pairs]
-    return Morph(
-        _end(initial, [(pair.initial, pair.initial_symmetry) for pair in pairs], "initial"),
-        _end(final, [(pair.final, pair.final_symmetry) for pair in pairs], "final"),
-        scheme,
-        np.array(windings),
-    )
+    return Morph(*_ends(initial, final, pairs), scheme, np.array([pair.winding or 0 for pair in pairs]))
 
 
 def reversed_pairs(initial: IFS, final: IFS, pairs: Sequence[Pair]) -> tuple[Pair, ...]:
     """The pairs of the morph from `final` to `initial` that runs backwards through the one these pairs stand for."""
-    turning = morph_of_pairs(initial, final, pairs).turning
     swapped = [Pair(pair.final, pair.initial, pair.final_symmetry, pair.initial_symmetry) for pair in pairs]
     # Half a turn goes counter-clockwise both ways unless it is wound back.
-    winding = np.round((-turning - morph_of_pairs(final, initial, swapped).turning) / (2 * np.pi))
+    winding = np.round((-_turning(initial, final, pairs) - _turning(final, initial, swapped)) / (2 * np.pi))
     return tuple(replace(pair, winding=int(turns)) for pair, turns in zip(swapped, winding, strict=True))
+
+
+def _turning(initial: IFS, final: IFS, pairs: Sequence[Pair]) -> np.ndarray:
+    """Radians (P,) that the maps of pairs turn by; what may follow them has no bearing on it."""
+    windings = np.array([pair.winding or 0 for pair in pairs])
+    return Morph(*(replace(end, transitions=None) for end in _ends(initial, final, pairs)), winding=windings).turning
 
 
 def shares(words: Sequence[Word]) -> np.ndarray:
@@ -118,12 +119,19 @@ def symmetry_text(symmetry: Symmetry | None) -> str:
     return f"turned by {degrees:g}°" if degrees else ""
 
 
+def _ends(initial: IFS, final: IFS, pairs: Sequence[Pair]) -> tuple[IFS, IFS]:
+    return (
+        _end(initial, [(pair.initial, pair.initial_symmetry) for pair in pairs], "initial"),
+        _end(final, [(pair.final, pair.final_symmetry) for pair in pairs], "final"),
+    )
+
+
 def _end(ifs: IFS, listed: list[tuple[Word, Symmetry | None]], name: str) -> IFS:
     words = [word for word, _ in listed]
     letters = [letter for word in words for letter in word]
     if not words or min(map(len, words)) == 0 or min(letters) < 0 or max(letters) >= ifs.count:
         raise IFSError(f"A pair names a map that the {name} shape does not have; it has {ifs.count}. Match again.")
-    if not is_cover(words, ifs.count):
+    if not is_cover(ifs, words):
         raise IFSError(
             f"The pairs do not make up the whole {name} shape; match again, or add the maps that are missing."
         )
@@ -132,15 +140,22 @@ def _end(ifs: IFS, listed: list[tuple[Word, Symmetry | None]], name: str) -> IFS
     weights = np.array([word_weight(ifs, word) for word in words]) * shares(words)
     # Split often enough, weights of zero alone may be left.
     weights = weights if weights.sum() > 0 else None
-    transitions = ifs.transitions
-    if transitions is not None:
-        if max(map(len, words)) > 1 or not (gauges == np.array(IDENTITY)).all():
-            raise IFSError(
-                f"The {name} shape is recurrent: its maps can be neither split nor turned by a symmetry; "
-                "clear the pairs."
-            )
-        transitions = transitions[np.ix_(letters, letters)]
-    return IFS(compose(maps, gauges), weights, ifs.name, transitions)
+    if ifs.is_recurrent and not (gauges == np.array(IDENTITY)).all():
+        raise IFSError(
+            f"The {name} shape is recurrent: no symmetry may turn its maps; match again, or clear the pairs."
+        )
+    return IFS(compose(maps, gauges), weights, ifs.name, _transitions(ifs, words))
+
+
+def _transitions(ifs: IFS, words: list[Word]) -> np.ndarray | None:
+    """Transitions (P, P) between words: all their letters are applied in turn, the last one first."""
+    if ifs.transitions is None:
+        return None
+    first, last = ([word[end] for word in words] for end in (0, -1))
+    chances = ifs.transitions @ ifs.weights
+    chances = ifs.transitions / np.where(chances > 0, chances, 1.0)[:, None]
+    within = [np.prod([chances[k, i] for i, k in pairwise(word)]) for word in words]
+    return ifs.transitions[np.ix_(first, last)] * within
 
 
 def _listed(symmetry: Symmetry | None) -> list | None:

@@ -153,8 +153,8 @@ class Problem:
         count = rows.shape[2]
         extra = CLUTTER * (count - self.least)
         samples = self.samples[order]
-        scores, found, work = score(*self.tables, rows, winding, samples, self.tolerance, bound, extra, self.threads)
-        self.work += work * count * (count - 1) // 2
+        scores, found, work = self._score(rows, winding, samples, bound, extra)
+        self.work += work
         swells = np.empty_like(found)
         swells[:, order] = found
         beside = scores - WORST * swells.max(axis=1) - MEAN * swells.mean(axis=1)
@@ -170,19 +170,31 @@ class Problem:
     def swells(self, candidate: Candidate, times: np.ndarray) -> np.ndarray:
         """Swell (S,) that a candidate needs at times (S,) of the straight line."""
         rows, winding = candidate.rows[None], candidate.winding[None]
-        _, swells, _ = score(*self.tables, rows, winding, times, self.tolerance, np.inf, 0.0, self.threads)
+        _, swells, _ = self._score(rows, winding, times, np.inf, 0.0)
         return swells[0]
+
+    def _score(
+        self, rows: np.ndarray, winding: np.ndarray, samples: np.ndarray, bound: float, extra: float
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Scores and swells as `scoring.score` gives them, and the work."""
+        count = rows.shape[2]
+        scores, swells, work = score(*self.tables, rows, winding, samples, self.tolerance, bound, extra, self.threads)
+        return scores, swells, work * count * (count - 1) // 2
 
     def pairs(self, candidate: Candidate) -> tuple[Pair, ...]:
         """A candidate as pairs of words and symmetries."""
+        return self.pairs_of(candidate.rows, candidate.winding)
+
+    def pairs_of(self, rows: np.ndarray, winding: np.ndarray) -> tuple[Pair, ...]:
+        """Rows (2, N) and winding (N,) as pairs of words and symmetries."""
         found = []
-        for k in range(candidate.rows.shape[1]):
+        for k in range(rows.shape[1]):
             parts = []
             for end in (0, 1):
-                word, symmetry = divmod(int(candidate.rows[end, k]), self.sizes[end])
+                word, symmetry = divmod(int(rows[end, k]), self.sizes[end])
                 matrix = self.ends[end].symmetries[symmetry]
                 parts.append((self.ends[end].words[word], tuple(tuple(row) for row in matrix.tolist())))
-            found.append(Pair(parts[0][0], parts[1][0], parts[0][1], parts[1][1], int(candidate.winding[k])))
+            found.append(Pair(parts[0][0], parts[1][0], parts[0][1], parts[1][1], int(winding[k])))
         return tuple(found)
 
     def starts(self) -> list[tuple[np.ndarray, np.ndarray]]:

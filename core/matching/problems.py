@@ -12,6 +12,7 @@ from .constraints import locks_of
 from .expansion import Word, split_all, split_to, word_map
 from .pairs import Pair
 from .problem import End, Problem
+from .recurrent import problem_of
 
 MOST_PROBLEMS = 4
 
@@ -50,7 +51,7 @@ def problems(
     found = []
     for words in lists[:MOST_PROBLEMS]:
         both = [End(end.ifs, end.symmetries, chosen) for end, chosen in zip(ends, words, strict=True)]
-        found.append(Problem(*both, tolerance, locks_of(locked, both), threads))
+        found.append(problem_of(*both, tolerance, locks_of(locked, both), threads))
     return found
 
 

@@ -44,7 +44,7 @@ def symmetries(ifs: IFS) -> np.ndarray:
     """
     identity = np.array([[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
     _, radius = ifs.enclosing_disc
-    if radius == 0 or ifs.count == 1:
+    if radius == 0 or ifs.count == 1 or ifs.is_recurrent:
         return identity
     areas = np.abs(determinant(ifs.linear))
     weights = np.maximum(areas, 0.01 * areas.sum())

@@ -14,7 +14,7 @@ from tests.core.reference import at, dense
 def test_a_split_shape_is_the_same_shape(name, count):
     ifs = SHAPES[name]
     words = split_to(ifs, count)
-    assert is_cover(words, ifs.count)
+    assert is_cover(ifs, words)
     assert len(words) <= max(count, ifs.count)
     assert sum(word_weight(ifs, word) for word in words) == pytest.approx(1)
     split = IFS([word_map(ifs, word) for word in words])
@@ -49,4 +49,4 @@ def test_the_last_letter_is_applied_first():
     ],
 )
 def test_a_cover_has_every_piece(words, whole):
-    assert is_cover(words, 2) == whole
+    assert is_cover(SHAPES["spiral"], words) == whole
