@@ -5,6 +5,7 @@ from dataclasses import replace
 import bpy
 
 from ...core.ifs import IFSError
+from ...core.matching.expansion import parts
 from .. import pairs
 from ..conversion import shape_ifs
 from ..property_options import window_held
@@ -102,21 +103,21 @@ class IFSMORPH_OT_pair_split(_PairOperator, bpy.types.Operator):
         word = getattr(listed[active], field)
         # Where the map is in several pairs, they share the parts.
         sharing = [k for k, pair in enumerate(listed) if getattr(pair, field) == word]
-        count = len(shape.maps)
-        if len(listed) + max(count - len(sharing), 0) > MOST_PAIRS:
+        words = parts(shape_ifs(shape), word)
+        if len(listed) + max(len(words) - len(sharing), 0) > MOST_PAIRS:
             raise IFSError(f"More than {MOST_PAIRS} pairs would come of it; split other maps.")
-        parts = [
+        split = [
             replace(
                 listed[sharing[k % len(sharing)]],
-                **{field: (*word, k % count), f"{field}_symmetry": pairs.IDENTITY},
+                **{field: words[k % len(words)], f"{field}_symmetry": pairs.IDENTITY},
             )
-            for k in range(max(count, len(sharing)))
+            for k in range(max(len(words), len(sharing)))
         ]
-        part_locks = [locks[sharing[k % len(sharing)]] for k in range(len(parts))]
+        part_locks = [locks[sharing[k % len(sharing)]] for k in range(len(split))]
         for k in reversed(sharing):
             del listed[k], locks[k]
         first = sharing[0]
-        listed[first:first], locks[first:first] = parts, part_locks
+        listed[first:first], locks[first:first] = split, part_locks
         return first
 
 

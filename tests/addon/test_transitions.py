@@ -8,9 +8,12 @@ from core.cloud import point_cloud
 from core.formats import read_shapes
 from core.ifs import IFS
 from core.shapes import SHAPES
+from tests.addon.interface import keys
 from tests.addon.support import add, attribute, content, show
 
 TRANSITIONS = np.float32([[0, 1, 0.5], [1, 0, 0.25], [1, 1, 1]])
+WHOLE = np.float32([[1, 0.5, 1], [1, 1, 2], [1, 0, 1]])
+"""With these the gasket stays in one piece."""
 
 FLAME = """<flame name="chaos"><xform weight="1" linear="1" chaos="0 1 1" coefs="0.5 0 0 0.5 0 0"/>
 <xform weight="1" linear="1" chaos="1 0 1" coefs="0.5 0 0 0.5 0.5 0"/>
@@ -131,3 +134,58 @@ def test_a_plain_shape_takes_the_place_of_a_recurrent_one(owner):
     assert not shape.recurrent
     assert (np.float32([item.transitions for item in shape.maps]) == 1).all()
     assert len(shape.maps) == SHAPES["square"].count <= 32
+
+
+@pytest.fixture
+def different(owner):
+    """An object whose initial shape allows other transitions than its final one."""
+    set_matrix(owner.ifs_morph.initial, TRANSITIONS)
+    owner.ifs_morph.path.frame_start, owner.ifs_morph.path.frame_end = 1, 12
+    return owner
+
+
+def test_one_press_morphs_recurrent_shapes(different, conversion, extension):
+    settings = different.ifs_morph
+    set_matrix(settings.initial, WHOLE)
+    bpy.ops.ifs_morph.load_shape(end="FINAL", shape="square")
+    bpy.ops.ifs_morph.morph()
+    assert len(settings.matching.pairs) >= 4
+    assert conversion.pairs_problem(settings) == ""
+    morph = conversion.morph_of(settings)
+    assert morph.part_of.max() + 1 == len(settings.matching.pairs) < morph.count
+    for u, shape in ((0, settings.initial), (1, settings.final)):
+        np.testing.assert_allclose(morph.at(u, u).bounds, conversion.shape_ifs(shape).bounds, atol=1e-3)
+    assert all(keys(different, extension)[:2])
+    assert "12 frames, all in one piece" in settings.path.report
+
+
+def test_parts_have_the_colors_of_their_maps(different, conversion):
+    settings = different.ifs_morph
+    part_of = conversion.morph_of(settings).part_of
+    assert len(part_of) > 3
+    expected = conversion.shape_colors(settings.initial)[part_of]
+    np.testing.assert_allclose(conversion.frame_colors(settings)[:, :3], expected)
+    show()
+
+
+def test_points_do_not_jump_where_transitions_begin_to_change(scene):
+    owner = add("POINTS", points=2000)
+    for end in ("INITIAL", "FINAL"):
+        bpy.ops.ifs_morph.load_shape(end=end, shape="gasket")
+    set_matrix(owner.ifs_morph.initial, TRANSITIONS)
+    found = []
+    for u in (0.0, 1e-4):
+        owner.ifs_morph.uv = u, u
+        show()
+        found.append(attribute(owner, "position"))
+    assert np.abs(found[1] - found[0]).max() < 1e-2
+
+
+def test_a_map_splits_into_what_may_follow_it(different, conversion):
+    settings = different.ifs_morph
+    for number in "123":
+        item = settings.matching.pairs.add()
+        item.initial = item.final = number
+    bpy.ops.ifs_morph.pair_split(end="INITIAL")
+    assert [each.initial for each in settings.matching.pairs] == ["1 2", "1 3", "2", "3"]
+    assert conversion.pairs_problem(settings) == ""
