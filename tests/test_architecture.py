@@ -23,6 +23,7 @@ CORE = (
     "grammar",
     "words",
     "shapes",
+    "recurrent_shapes",
     "joining",
     "morph",
     "heap",

@@ -25,6 +25,8 @@ class MatchReport:
     pairs : tuple of Pair
     counts : (int, int)
         Maps of the two shapes as given.
+    parts : int
+        Maps that the morph has beyond the pairs, where the shapes allow different transitions (see `joining`).
     work : int
         Shapes decided in the search.
     """
@@ -35,6 +37,7 @@ class MatchReport:
     straight_swell: tuple[float, float]
     pairs: tuple[Pair, ...]
     counts: tuple[int, int]
+    parts: int
     work: int
 
     @property
@@ -95,7 +98,8 @@ class MatchReport:
             done = [f"{split} split"] * bool(split) + [f"{doubled} listed again"] * bool(doubled)
             done += [f"{turned} turned or mirrored by symmetries of the shape"] * bool(turned)
             parts.append(f"{count} {name} maps" + (f" ({', '.join(done)})" if done else ""))
-        return f"{len(self.pairs)} pairs of {parts[0]} and {parts[1]}."
+        more = f", in {len(self.pairs) + self.parts} parts, for they allow different transitions" * bool(self.parts)
+        return f"{len(self.pairs)} pairs of {parts[0]} and {parts[1]}{more}."
 
     def _certainty(self) -> str:
         if not self.disconnected:

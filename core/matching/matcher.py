@@ -181,6 +181,7 @@ def match_steps(
             (straight.report.path.most_swell, straight.report.path.mean_swell),
             pairs,
             (initial.count, final.count),
+            morph.count - len(pairs),
             work,
         )
         return Match(morph, path, report, pairs, path_cost(path) + other)

@@ -3,6 +3,7 @@
 import bpy
 
 from ...core.ifs import IFSError
+from ...core.recurrent_shapes import RECURRENT_SHAPES
 from ...core.shapes import SHAPES
 from ...core.space.shapes import SPACE_SHAPES
 from ..conversion import fit_window, write_shape
@@ -23,7 +24,7 @@ class IFSMORPH_OT_load_shape(bpy.types.Operator):
 
     def execute(self, context):
         """Replace the maps."""
-        library = SHAPES | SPACE_SHAPES
+        library = SHAPES | RECURRENT_SHAPES | SPACE_SHAPES
         if self.shape not in library:
             names = ", ".join(library)
             self.report({"ERROR"}, f"The library has no shape “{self.shape}”; it has {names}.")

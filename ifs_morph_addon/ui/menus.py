@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.recurrent_shapes import RECURRENT_SHAPES
 from ...core.shapes import SHAPES
 from ...core.space.shapes import SPACE_SHAPES
 
@@ -25,6 +26,9 @@ class _Library:
     def draw(self, context):
         """Draw one entry for each shape of the library."""
         self.draw_shapes(self.layout, SHAPES)
+        self.layout.separator()
+        self.layout.label(text="Recurrent")
+        self.draw_shapes(self.layout, RECURRENT_SHAPES)
         self.layout.separator()
         in_space = self.layout.column()
         in_space.enabled = context.object is not None and context.object.ifs_morph.kind == "POINTS"

@@ -53,6 +53,13 @@ def test_ends_are_the_shapes(which):
 
 
 @every_pair
+def test_the_report_says_that_maps_are_taken_apart(which):
+    found = match_of(which)
+    assert found.morph.count > len(found.pairs)
+    assert f"in {found.morph.count} parts, for they allow different transitions." in found.report.text()
+
+
+@every_pair
 def test_the_pairs_make_the_morph_again(which):
     found = match_of(which)
     again = morph_of_pairs(*PAIRS[which], found.pairs)
