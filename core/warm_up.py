@@ -27,6 +27,7 @@ from .matching import match
 from .morph import Morph
 from .path import plan_path
 from .raster import fit_window, render
+from .recurrent_shapes import RECURRENT_SHAPES
 from .report import check_frames
 from .shading import attractorlet_colors, shade
 from .shapes import SHAPES
@@ -95,7 +96,15 @@ def _matches() -> None:
     match(SHAPES["twindragon"], SHAPES["square"], 8, threads=1)
 
 
-PARTS = {"pictures": (_pictures, _points, _space), "paths": (_shapes, _paths, _matches)}
+def _recurrent() -> None:
+    shape = RECURRENT_SHAPES["hollow square"]
+    check_frames(Morph(shape, shape), np.zeros((2, 3)), threads=1)
+    point_cloud(shape, 1000, threads=1)
+    for mode in ("set", "density", "attractorlet"):
+        render(shape, SIZE, None, mode, norms=shape.norms, threads=1)
+
+
+PARTS = {"pictures": (_pictures, _points, _space), "paths": (_shapes, _paths, _matches, _recurrent)}
 """What takes about as long as another, for as many processes."""
 
 

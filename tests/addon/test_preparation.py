@@ -33,7 +33,7 @@ def compiled():
 
 before = compiled()
 bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-for final in ("gasket", "terdragon", "Barnsley fern"):
+for final in ("gasket", "terdragon", "Barnsley fern", "hollow square"):
     bpy.ops.object.ifs_morph_add(kind="IMAGE")
     owner = bpy.context.object
     settings = owner.ifs_morph
@@ -42,6 +42,8 @@ for final in ("gasket", "terdragon", "Barnsley fern"):
     settings.path.frame_start, settings.path.frame_end = 1, 12
     if final == "Barnsley fern":
         bpy.ops.ifs_morph.load_shape(end="INITIAL", shape="maple leaf")
+    if final == "hollow square":
+        bpy.ops.ifs_morph.load_shape(end="INITIAL", shape="square")
     bpy.ops.ifs_morph.load_shape(end="FINAL", shape=final)
     for mode in ("SET", "DENSITY", "ATTRACTORLET"):
         for antialiasing in (1, 2):
