@@ -8,7 +8,7 @@ from collections import namedtuple
 import numpy as np
 
 from .. import enclosure
-from ..decision import POINT, STACK, WORK, set_whole
+from ..decision import MANY, POINT, STACK, WORDS_A_MAP, WORK, set_whole
 from ..heap import ascending
 from ..kernels import njit
 from ..overlap import MEET, ROUNDING, SLACK, UNKNOWN, join, surely_one_piece
@@ -16,12 +16,22 @@ from ..states import CONNECTED, DISCONNECTED, NO_ATTRACTOR, UNDECIDED
 from .enclosure import determinant, enclosing_ball, fixed_point, mean_fixed_point, shrinking_words
 from .gap import empty_search, measure_gap
 from .overlap import BUDGET, pair_test
-from .tree import CAPACITY, NORM, View, center, empty_tree, plant
+from .polytope import DIRECTIONS, shrink_polytope
+from .tree import CAPACITY, NORM, View, center, empty_tree, plant, prune
 
 EASY_BUDGET = 256
-"""Pairs of pieces looked at in the first stage; `overlap.BUDGET` in the second, if need be."""
+"""Pairs of pieces looked at in the first stage, which knows balls only; `overlap.BUDGET` in the second, if need be."""
 
-Desk = namedtuple("Desk", "tree search first second key left right between order nearest points")
+MOST_WORK = 30_000
+"""Pairs of pieces looked at for one attractor, after which pairs of attractorlets are left open."""
+
+STEPS = 4
+"""Of the search for a plane between two pieces, in the second stage."""
+
+POLYTOPE_PRECISION = 1e-3
+"""The change at which the outer polytope is good enough, relative to the ball's radius."""
+
+Desk = namedtuple("Desk", "tree search first second key left right between order nearest reaches points")
 """Work space, made once for many attractors."""
 
 
@@ -30,7 +40,7 @@ def empty_desk(count):
     """Work space for N maps."""
     pairs = max(1, count * (count - 1) // 2)
     return Desk(
-        empty_tree(),
+        empty_tree(max(CAPACITY, min(count, MANY) * WORDS_A_MAP)),
         empty_search(count),
         np.empty(STACK, np.int32),
         np.empty(STACK, np.int32),
@@ -40,12 +50,13 @@ def empty_desk(count):
         np.empty(pairs),
         np.empty(pairs, np.int64),
         np.empty(pairs, np.int64),
+        np.empty(DIRECTIONS),
         np.empty((count, 3)),
     )
 
 
 @njit(nogil=True, cache=True)
-def decide(desk, areas, view, tolerance, labels):
+def decide(desk, linear, areas, view, tolerance, labels):
     """State of one attractor, and in `labels` (N,) the component that each attractorlet is known to belong to.
 
     The area certificate holds in any number of dimensions: `areas` (N,) are the volumes of the maps here.
@@ -64,13 +75,21 @@ def decide(desk, areas, view, tolerance, labels):
                 between[known], left[known], right[known] = apart, i, j
                 known += 1
     ascending(between, known, desk.order, nearest)
-    for budget in (EASY_BUDGET, BUDGET):
+    begun = tree.used[1]
+    for steps, budget in ((0, EASY_BUDGET), (STEPS, BUDGET)):
         still_open = 0
+        if steps > 0:
+            find_polytope(desk, linear, view)
         for place in range(known):
             i, j = left[nearest[place]], right[nearest[place]]
             if labels[i] == labels[j]:
                 continue
-            outcome = pair_test(tree, count, view, i, j, tolerance, budget, desk.first, desk.second, desk.key)
+            if tree.used[0] > tree.child.shape[0] // 2:
+                prune(tree, count)
+            looks = budget if tree.used[1] - begun < MOST_WORK else 0
+            outcome = pair_test(
+                tree, count, view, i, j, tolerance, desk.reaches, steps, looks, desk.first, desk.second, desk.key
+            )
             if outcome == MEET:
                 join(labels, i, j)
                 if surely_one_piece(labels, areas):
@@ -85,6 +104,15 @@ def decide(desk, areas, view, tolerance, labels):
         if labels[left[nearest[place]]] != labels[right[nearest[place]]]:
             return UNDECIDED
     return DISCONNECTED
+
+
+@njit(nogil=True, cache=True)
+def find_polytope(desk, linear, view):
+    """Write the reaches of the outer polytope, about the centre of the ball."""
+    for i in range(linear.shape[0]):
+        x, y, z = center(desk.tree, i, view)
+        desk.points[i, 0], desk.points[i, 1], desk.points[i, 2] = x - view.x, y - view.y, z - view.z
+    shrink_polytope(linear, desk.points, view.radius, view.slack, POLYTOPE_PRECISION * view.radius, desk.reaches)
 
 
 @njit(nogil=True, cache=True)
@@ -145,10 +173,8 @@ def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, first, 
         if radius <= POINT * largest:
             set_whole(node, 0.0, state, gap, labels)
             continue
-        if tree.used[0] > CAPACITY // 2:
-            plant(tree, linear, moved, drift)
         view = View(x, y, z, along[node], radius, SLACK * max(radius, abs(x) + abs(y) + abs(z)) + ROUNDING * largest)
-        state[node] = decide(desk, areas, view, tolerance, labels[node])
+        state[node] = decide(desk, linear, areas, view, tolerance, labels[node])
         if state[node] == CONNECTED:
             set_whole(node, tolerance, state, gap, labels)
         elif with_gap:

@@ -25,9 +25,9 @@ a distance, so that pieces are called apart only when they are."""
 
 
 @njit(nogil=True, cache=True)
-def empty_tree():
+def empty_tree(capacity):
     """Room for a tree."""
-    return Tree(np.empty((CAPACITY, COLUMNS)), np.empty(CAPACITY, np.int32), np.zeros(2, np.int64))
+    return Tree(np.empty((capacity, COLUMNS)), np.empty(capacity, np.int32), np.zeros(2, np.int64))
 
 
 @njit(nogil=True, cache=True)
@@ -45,13 +45,21 @@ def plant(tree, linear, start, drift):
 
 
 @njit(nogil=True, cache=True)
+def prune(tree, count):
+    """Leave only the words of one letter, of which there are `count`."""
+    for i in range(count):
+        tree.child[i] = -1
+    tree.used[0] = count
+
+
+@njit(nogil=True, cache=True)
 def first_child(tree, count, parent):
     """Place of the first of a word's N children, which are made if they are not there; -1 if there is no room."""
     first = tree.child[parent]
     if first >= 0:
         return first
     first = tree.used[0]
-    if first + count > CAPACITY:
+    if first + count > tree.child.shape[0]:
         return -1
     whole = tree.word[parent]
     for k in range(count):
