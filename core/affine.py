@@ -1,7 +1,8 @@
 """Affine maps of the plane: compose, invert, measure, and take apart by polar decomposition.
 
 A map is an array (..., 2, 3), ``[[a, b, e], [c, d, f]]``, standing for ``w(x) = L x + t`` with the linear part
-``L = [[a, b], [c, d]]`` and the translation ``t = (e, f)``. All functions work on stacks of maps at once.
+``L = [[a, b], [c, d]]`` and the translation ``t = (e, f)``. All functions work on stacks of maps at once. What composes
+and measures maps takes those of space (..., 3, 4) as well.
 """
 
 from __future__ import annotations
@@ -23,15 +24,15 @@ def compose(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
         ``outer(inner(x))``.
     """
     outer, inner = np.asarray(outer, dtype=float), np.asarray(inner, dtype=float)
-    product = outer[..., :, :2] @ inner
-    product[..., :, 2] += outer[..., :, 2]
+    product = outer[..., :, :-1] @ inner
+    product[..., :, -1] += outer[..., :, -1]
     return product
 
 
 def transform(maps: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Apply maps (..., 2, 3) to points (..., 2), broadcast against each other."""
     maps, points = np.asarray(maps, dtype=float), np.asarray(points, dtype=float)
-    return np.einsum("...ij,...j->...i", maps[..., :, :2], points) + maps[..., :, 2]
+    return np.einsum("...ij,...j->...i", maps[..., :, :-1], points) + maps[..., :, -1]
 
 
 def invert(maps: np.ndarray) -> np.ndarray:
@@ -43,8 +44,8 @@ def invert(maps: np.ndarray) -> np.ndarray:
         If a map is singular.
     """
     maps = np.asarray(maps, dtype=float)
-    linear = np.linalg.inv(maps[..., :, :2])
-    translation = -np.einsum("...ij,...j->...i", linear, maps[..., :, 2])
+    linear = np.linalg.inv(maps[..., :, :-1])
+    translation = -np.einsum("...ij,...j->...i", linear, maps[..., :, -1])
     return np.concatenate([linear, translation[..., None]], axis=-1)
 
 
@@ -61,18 +62,22 @@ def through(points: np.ndarray, images: np.ndarray) -> np.ndarray:
 
 
 def determinant(linear: np.ndarray) -> np.ndarray:
-    """Determinant of linear parts (..., 2, 2): the signed factor by which areas grow."""
+    """Determinant of linear parts (..., 2, 2) or (..., 3, 3): the signed factor by which areas or volumes grow."""
+    if linear.shape[-1] == 3:
+        return np.linalg.det(linear)
     return linear[..., 0, 0] * linear[..., 1, 1] - linear[..., 0, 1] * linear[..., 1, 0]
 
 
 def singular_values(linear: np.ndarray) -> np.ndarray:
-    """Singular values of linear parts (..., 2, 2), in closed form.
+    """The largest and the smallest singular value of linear parts (..., 2, 2), in closed form, or (..., 3, 3).
 
     Returns
     -------
     (..., 2)
         The largest, which is the Lipschitz constant of the map, and the smallest, which is never negative.
     """
+    if linear.shape[-1] == 3:
+        return np.linalg.svd(linear, compute_uv=False)[..., ::2]
     a, b, c, d = (linear[..., i, j] for i in (0, 1) for j in (0, 1))
     turning = np.hypot(a + d, c - b)
     mirroring = np.hypot(a - d, b + c)

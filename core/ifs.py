@@ -75,7 +75,7 @@ class IFS:
         if len(maps) == 0:
             raise IFSError(f"{self._called} has no maps; add at least one.")
         _require_finite(maps, f"{self._called} map", self._ENTRIES)
-        areas = np.abs(self._determinants(maps[:, :, :-1]))
+        areas = np.abs(determinant(maps[:, :, :-1]))
         if self.weights is None:
             total = areas.sum()
             weights = np.maximum(areas, WEIGHT_FLOOR * total) if total > 0 else np.ones(len(maps))
@@ -99,10 +99,6 @@ class IFS:
             object.__setattr__(self, "transitions", _checked_transitions(self.transitions, len(maps), self._called))
         object.__setattr__(self, "maps", maps)
         object.__setattr__(self, "weights", weights)
-
-    @staticmethod
-    def _determinants(linear: np.ndarray) -> np.ndarray:
-        return determinant(linear)
 
     @property
     def _called(self) -> str:

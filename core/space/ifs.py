@@ -46,18 +46,9 @@ class SpaceIFS(IFS):
             raise IFSError(f"{self._called} shapes in space have no transitions; leave them out.")
         super().__post_init__()
 
-    @staticmethod
-    def _determinants(linear: np.ndarray) -> np.ndarray:
-        return np.linalg.det(linear)
-
     @property
     def _spectral_radii(self) -> np.ndarray:
         return np.abs(np.linalg.eigvals(self.linear)).max(axis=-1)
-
-    @cached_property
-    def norms(self) -> np.ndarray:
-        """Lipschitz constants (N,) of the maps."""
-        return np.linalg.svd(self.linear, compute_uv=False)[:, 0]
 
     @cached_property
     def _words(self) -> tuple:
