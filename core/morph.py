@@ -55,12 +55,16 @@ class Morph:
     flips : tuple of int
         Maps given that reflect at one end only, or have a part that does. No path of non-singular maps of the plane
         joins such ends: the map is flattened to a line half-way, as if turned over about its mirror axis and projected.
+    turned_over : tuple of int
+        Maps that reflect at one end only and turn over through space: none, but see `space.lifting.LiftedMorph`.
     turning : (N,)
         Radians by which each map turns on the way, counter-clockwise positive; not for the scheme ``elementwise``.
     """
 
     DIMENSION = 2
     """Of the shapes, see `IFS.DIMENSION`."""
+
+    turned_over: tuple[int, ...] = ()
 
     def __init__(self, initial: IFS, final: IFS, scheme: str = "polar", winding: np.ndarray | None = None) -> None:
         winding = self._accept(initial, final, scheme, winding)

@@ -28,9 +28,9 @@ from .swelling import envelope, least_swell_field_steps, least_swell_steps
 METHODS = ("planned", "per map", "straight", "straight unswollen")
 """Through the locus; a path for each map; straight with least swell; straight without swell, the paper's Figure 5."""
 
-LOCUS_RESOLUTION = 256
-SWELL_RESOLUTION = 97
-"""Nodes along u of the locus and of the field of least swell, where the caller brings no locus."""
+LOCUS_RESOLUTION = {2: 256, 3: 31}
+SWELL_RESOLUTION = {2: 97, 3: 16}
+"""Nodes along u of the locus and of the field of least swell, where the caller brings no locus, by dimensions."""
 
 FAR_LONGER = 4.0
 """A connected path more than this many times as long as the straight line is given up for swell."""
@@ -105,7 +105,7 @@ def plan_path(
     ----------
     morph : Morph
     locus : Locus, optional
-        Computed at 256 nodes a side if not given; its own tolerance should be the same.
+        Computed at 256 nodes a side, 31 in space, if not given; its own tolerance should be the same.
     frames : int
         Of the animation; keys lie on whole frames, and each frame is checked.
     tolerance : float
@@ -147,7 +147,9 @@ def plan_path_steps(
     if method == "planned":
         if locus is None:
             locus = yield from parallel.part(
-                compute_locus_steps(morph, LOCUS_RESOLUTION, tolerance, threads=threads, gap=False), 0.0, 0.4
+                compute_locus_steps(morph, LOCUS_RESOLUTION[morph.DIMENSION], tolerance, threads=threads, gap=False),
+                0.0,
+                0.4,
             )
         points = yield from parallel.part(_route_inside_steps(morph, locus, tolerance, frames), 0.4, 0.5)
         if points is None or _length(points) > FAR_LONGER * np.sqrt(2):
@@ -156,7 +158,7 @@ def plan_path_steps(
                 if points is None
                 else "The connected path in (u,v) is far longer than the straight line, so the maps swell instead."
             )
-            u, v = nodes(SWELL_RESOLUTION)
+            u, v = nodes(SWELL_RESOLUTION[morph.DIMENSION])
             field = yield from parallel.part(least_swell_field_steps(morph, u, v, tolerance, threads=threads), 0.5, 0.7)
             points = _route_of_least_swell(u, v, field)
         keys = _rounded(morph, _straight_keys(points, frames), frames, tolerance)
@@ -178,7 +180,8 @@ def plan_path_steps(
     straight = yield from parallel.part(
         check_frames_steps(morph, np.stack([times, times, 0 * times], axis=1), tolerance, threads), 0.95, 1.0
     )
-    return Path(keys, swell_keys, offset_keys, PathReport(checked, straight, method, reason, morph.flips))
+    report = PathReport(checked, straight, method, reason, morph.flips, morph.turned_over)
+    return Path(keys, swell_keys, offset_keys, report)
 
 
 def _sample(keys: Keys, swell_keys: Keys, offset_keys: Keys | None, times: np.ndarray) -> np.ndarray:

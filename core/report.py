@@ -80,7 +80,9 @@ class PathReport:
     reason : str
         A sentence on why it is as it is, or nothing.
     flips : tuple of int
-        Maps that reflect at one end only and pass through a line (see `Morph.flips`).
+        Maps that reflect at one end only and pass through a line, in space through a plane (see `Morph.flips`).
+    turned_over : tuple of int
+        Maps that reflect at one end only and turn over through space (see `Morph.turned_over`).
     """
 
     path: FrameCheck
@@ -88,6 +90,7 @@ class PathReport:
     method: str
     reason: str
     flips: tuple[int, ...]
+    turned_over: tuple[int, ...] = ()
 
     def text(self) -> str:
         """The report in a few plain sentences, a line each."""
@@ -98,9 +101,10 @@ class PathReport:
         lines += _swell_sentences(self.path)
         if self.method != "straight unswollen":
             lines.append(_sentence("The straight line without swell", self.straight))
-        if self.flips:
-            maps = ", ".join(str(i + 1) for i in self.flips)
-            lines.append(f"Flattened half-way, since only one end reflects: map {maps}.")
+        for done, flipped in (("Flattened half-way", self.flips), ("Turned over through space", self.turned_over)):
+            if flipped:
+                maps = ", ".join(str(i + 1) for i in flipped)
+                lines.append(f"{done}, since only one end reflects: map {maps}.")
         return "\n".join(lines)
 
     def _failures(self) -> list[str]:

@@ -51,7 +51,7 @@ def _save(name: str) -> list[Image.Image]:
         stage.press(button)
     stage.frame(owner)
     scene = bpy.context.scene
-    pictures = [_render(scene, frame) for frame in (*ROW, STILL)]
+    pictures = [render(scene, frame) for frame in (*ROW, STILL)]
     pictures.pop().quantize(256).save(HERE / f"{name}.png", optimize=True)
     scene.frame_set(1)
     if owner.ifs_morph.kind == "POINTS":
@@ -63,7 +63,8 @@ def _save(name: str) -> list[Image.Image]:
     return [picture.resize((CELL, CELL), Image.Resampling.LANCZOS) for picture in pictures]
 
 
-def _render(scene, frame: int) -> Image.Image:
+def render(scene, frame: int) -> Image.Image:
+    """Render one frame, as it is."""
     import bpy
 
     target = stage.ROOT / "out" / "still.png"

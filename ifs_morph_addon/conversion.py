@@ -16,7 +16,7 @@ from ..core.morph import SCHEMES, Morph, spread
 from ..core.raster import fit_window as fitted_window
 from ..core.shading import attractorlet_colors
 from ..core.space.ifs import SpaceIFS
-from ..core.space.lifting import FLIPS, morph_between
+from ..core.space.lifting import FLIPS, in_one_space, morph_between
 from . import fcurves, pairs, preparation
 
 FIT_SAMPLES = 33
@@ -119,19 +119,32 @@ def _ifs(maps: bytes, weights: bytes, name: str, transitions: bytes | None, in_s
 
 def morph_of(settings) -> Morph:
     """The morph between an object's two shapes, made of its pairs if it has any; raises IFSError."""
-    initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
-    if has_pairs(settings) and not is_in_space(settings):
-        return _paired_morph(initial, final, settings.scheme, current_pairs(settings))
-    if initial.count != final.count and not is_in_space(settings):
+    initial, final = shapes_of(settings)
+    if has_pairs(settings):
+        return _paired_morph(initial, final, settings.scheme, current_pairs(settings), flip_of(settings))
+    if initial.count != final.count:
         raise IFSError(
             f"The initial shape has {initial.count} maps and the final one {final.count}; press Morph to pair them. "
             "Without pairs both must have as many."
         )
     winding = np.zeros(final.count, dtype=np.int32)
     settings.final.maps.foreach_get("winding", winding)
-    # A picture shows what stays in the plane.
-    flip = core_name(settings.flip, FLIPS) if settings.kind == "POINTS" else "projected"
-    return _morph(initial, final, settings.scheme, winding.tobytes(), flip)
+    return _morph(initial, final, settings.scheme, winding.tobytes(), flip_of(settings))
+
+
+def shapes_of(settings) -> tuple[IFS, IFS]:
+    """The two shapes of an object, one of the plane put into space beside one of space; raises IFSError."""
+    return _in_one_space(shape_ifs(settings.initial), shape_ifs(settings.final))
+
+
+@lru_cache(maxsize=16)
+def _in_one_space(initial: IFS, final: IFS) -> tuple[IFS, IFS]:
+    return in_one_space(initial, final)
+
+
+def flip_of(settings) -> str:
+    """What becomes of a map that reflects at one end only: among points the user's choice, a picture has no height."""
+    return core_name(settings.flip, FLIPS) if settings.kind == "POINTS" else "projected"
 
 
 @lru_cache(maxsize=16)
@@ -140,8 +153,8 @@ def _morph(initial: IFS, final: IFS, scheme: str, winding: bytes, flip: str) -> 
 
 
 @lru_cache(maxsize=16)
-def _paired_morph(initial: IFS, final: IFS, scheme: str, paired: tuple[Pair, ...]) -> Morph:
-    return morph_of_pairs(initial, final, paired, core_name(scheme, SCHEMES))
+def _paired_morph(initial: IFS, final: IFS, scheme: str, paired: tuple[Pair, ...], flip: str) -> Morph:
+    return morph_of_pairs(initial, final, paired, core_name(scheme, SCHEMES), flip)
 
 
 def frame_of(settings, morph: Morph) -> IFS:
@@ -156,7 +169,7 @@ def is_in_space(settings) -> bool:
 
 def has_pairs(settings) -> bool:
     """Whether an object's maps are paired otherwise than map k with map k."""
-    return len(settings.matching.pairs) > 0 and not is_in_space(settings)
+    return len(settings.matching.pairs) > 0
 
 
 def current_pairs(settings) -> tuple[Pair, ...]:
@@ -167,7 +180,7 @@ def current_pairs(settings) -> tuple[Pair, ...]:
     IFSError
         If a shape is none.
     """
-    initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
+    initial, final = shapes_of(settings)
     found = pairs.fitted(initial, final, settings.matching) if has_pairs(settings) else None
     return found or pairs.in_order(initial, final)
 
@@ -175,7 +188,7 @@ def current_pairs(settings) -> tuple[Pair, ...]:
 def pairs_problem(settings) -> str:
     """What is wrong with an object's pairs, in one sentence; empty if nothing is."""
     try:
-        initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
+        initial, final = shapes_of(settings)
     except IFSError:
         return ""  # Said of the shapes.
     fits = not has_pairs(settings) or pairs.fitted(initial, final, settings.matching)
@@ -219,7 +232,7 @@ def fingerprint(settings, *more) -> str:
     winding = [item.winding for item in settings.final.maps]
     digest.update(repr((settings.scheme, winding, settings.gap_resolution, more)).encode())
     if has_pairs(settings):
-        digest.update(repr(pairs.plain(settings.matching)).encode())
+        digest.update(repr((pairs.plain(settings.matching), flip_of(settings))).encode())
     return digest.hexdigest()[:16]
 
 
@@ -367,8 +380,8 @@ def match_problem(settings) -> str:
     """What keeps an object's shapes from being matched, in one sentence; empty if nothing does."""
     if preparation.is_running():
         return preparation.message()
-    if is_in_space(settings):
-        return "Shapes in space cannot be matched; plan a path with the maps in their order instead."
+    if settings.kind == "IMAGE" and is_in_space(settings):
+        return NO_PICTURE
     try:
         _require_attractors(settings)
     except (IFSError, ImportError) as error:
@@ -376,8 +389,8 @@ def match_problem(settings) -> str:
     return ""
 
 
-def _require_attractors(settings) -> list[IFS]:
-    shapes = [shape_ifs(settings.initial), shape_ifs(settings.final)]
+def _require_attractors(settings) -> tuple[IFS, IFS]:
+    shapes = shapes_of(settings)
     for ifs in shapes:
         ifs.require_attractor()
     return shapes

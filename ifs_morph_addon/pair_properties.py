@@ -10,9 +10,8 @@ from bpy.props import (
     StringProperty,
 )
 
+from .pairs import no_symmetry
 from .property_options import LEAF, LIST, STILL, refit
-
-IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 
 BUDGETS = (
     ("QUICK", "Quick", "Search for a few seconds"),
@@ -31,12 +30,13 @@ def _word(end):
     )
 
 
-def _symmetry(end):
+def _symmetry(end, dimension):
     return FloatVectorProperty(
         name=f"{end} Symmetry",
-        description=f"Turn or mirroring that takes the {end.lower()} shape to itself, made before the map",
-        size=(2, 3),
-        default=IDENTITY,
+        description=f"Turn or mirroring that takes the {end.lower()} shape to itself, made before the map"
+        + (", for shapes in space" if dimension == 3 else ""),
+        size=(dimension, dimension + 1),
+        default=no_symmetry(dimension),
         options=STILL,
         override=LEAF,
         update=refit,
@@ -48,8 +48,10 @@ class IFSMorphPair(bpy.types.PropertyGroup):
 
     initial: _word("Initial")
     final: _word("Final")
-    initial_symmetry: _symmetry("Initial")
-    final_symmetry: _symmetry("Final")
+    initial_symmetry: _symmetry("Initial", 2)
+    final_symmetry: _symmetry("Final", 2)
+    initial_symmetry_in_space: _symmetry("Initial", 3)
+    final_symmetry_in_space: _symmetry("Final", 3)
     winding: IntProperty(
         name="Winding",
         description="Whole turns that the map makes on its way, on top of the shorter way",

@@ -12,16 +12,27 @@ import numpy as np
 
 from ..core.ifs import IFS, IFSError
 from ..core.matching import Pair, morph_of_pairs, symmetry_text
-from ..core.matching.pairs import IDENTITY
+from ..core.matching.pairs import IDENTITY, as_map
 from ..core.matching.symmetry import symmetries
 
 NEAR = 1e-4
 """Entries of a symmetry, in units of the shape, that differ by less are of the same one. Others are far apart."""
 
-STORED = ("initial", "final", "initial_symmetry", "final_symmetry", "winding", "locked")
-"""What a pair stores; its symmetry in words follows."""
+STORED = ("initial", "final", "winding", "locked")
+"""What a pair stores beside its symmetries."""
 
-SIGNS = {"turned by ": "\N{ANTICLOCKWISE OPEN CIRCLE ARROW}", "mirrored at ": "\N{LEFT RIGHT ARROW}"}
+SYMMETRIES = {2: ("initial_symmetry", "final_symmetry"), 3: ("initial_symmetry_in_space", "final_symmetry_in_space")}
+"""Where a pair stores its symmetries, by dimensions."""
+
+SIGNS = {
+    "turned by ": "\N{ANTICLOCKWISE OPEN CIRCLE ARROW}",
+    " and mirrored along it": "\N{LEFT RIGHT ARROW}",
+    "mirrored at ": "\N{LEFT RIGHT ARROW}",
+    "mirrored along ": "\N{LEFT RIGHT ARROW}",
+    "mirrored through its middle": "\N{LEFT RIGHT ARROW}",
+    " about ": " ",
+    ", ": ",",
+}
 """Of symmetries, where there is room for a sign only."""
 
 OUTDATED = "The pairs no longer fit the maps, so map k becomes map k for now: Match Pairs again, or Clear Pairs."
@@ -34,19 +45,29 @@ def stored(matching) -> tuple[Pair, ...]:
 
 def plain(matching) -> tuple:
     """All that the morph depends on, as texts and bytes, which are quick to read; it need not make sense."""
-    items = matching.pairs
-    arrays = [
-        np.empty(6 * len(items), np.float32),
-        np.empty(6 * len(items), np.float32),
-        np.empty(len(items), np.int32),
-    ]
-    for name, values in zip(("initial_symmetry", "final_symmetry", "winding"), arrays, strict=True):
+    items, dimension = matching.pairs, _dimension(matching)
+    numbers = len(items) * dimension * (dimension + 1)
+    arrays = [np.empty(numbers, np.float32), np.empty(numbers, np.float32), np.empty(len(items), np.int32)]
+    for name, values in zip((*SYMMETRIES[dimension], "winding"), arrays, strict=True):
         items.foreach_get(name, values)
-    return tuple((item.initial, item.final) for item in items), *(values.tobytes() for values in arrays)
+    words = tuple((item.initial, item.final) for item in items)
+    return dimension, words, *(values.tobytes() for values in arrays)
 
 
-def _pairs(words, initial: bytes, final: bytes, winding: bytes) -> tuple[Pair, ...]:
-    symmetries = [np.frombuffer(each, np.float32).reshape(-1, 2, 3).tolist() for each in (initial, final)]
+def _dimension(stored) -> int:
+    """Dimensions of the morph whose object something is stored on."""
+    settings = stored.id_data.ifs_morph
+    return 3 if settings.initial.in_space or settings.final.in_space else 2
+
+
+def no_symmetry(dimension: int) -> tuple:
+    """Rows of the map that changes nothing."""
+    return _rows(np.eye(dimension, dimension + 1).tolist())
+
+
+def _pairs(dimension: int, words, initial: bytes, final: bytes, winding: bytes) -> tuple[Pair, ...]:
+    shape = -1, dimension, dimension + 1
+    symmetries = [np.frombuffer(each, np.float32).reshape(shape).tolist() for each in (initial, final)]
     return tuple(
         Pair(word_of(first), word_of(last), _rows(before), _rows(after), turns)
         for (first, last), before, after, turns in zip(
@@ -74,18 +95,18 @@ def _rows(matrix) -> tuple:
 
 def described(item) -> str:
     """The symmetries of a stored pair in words; nothing if it makes use of none."""
-    found = [(end, symmetry_text(_rows(getattr(item, f"{end}_symmetry")))) for end in ("initial", "final")]
-    return ", ".join(f"{end} {text}" for end, text in found if text)
+    texts = [symmetry_text(_rows(getattr(item, name))) for name in SYMMETRIES[_dimension(item)]]
+    return ", ".join(f"{end} {text}" for end, text in zip(("initial", "final"), texts, strict=True) if text)
 
 
 def line(item) -> str:
     """A stored pair in as few signs as a list has room for: ``3 1 → 2 ↺120° +1``."""
     ends = []
-    for end in ("initial", "final"):
-        text = symmetry_text(_rows(getattr(item, f"{end}_symmetry")))
+    for end, name in zip((item.initial, item.final), SYMMETRIES[_dimension(item)], strict=True):
+        text = symmetry_text(_rows(getattr(item, name)))
         for words, sign in SIGNS.items():
             text = text.replace(words, sign)
-        ends.append(f"{getattr(item, end)} {text}".strip())
+        ends.append(f"{end} {text}".strip())
     turns = f" {item.winding:+d}" if item.winding else ""
     return f"{ends[0]} \N{RIGHTWARDS ARROW} {ends[1]}{turns}"
 
@@ -97,8 +118,6 @@ def fitted(initial: IFS, final: IFS, matching) -> tuple[Pair, ...] | None:
 
 @lru_cache(maxsize=16)
 def _fitted(initial: IFS, final: IFS, stored_pairs: tuple) -> tuple[Pair, ...] | None:
-    if any(ifs.maps.shape[1:] != (2, 3) for ifs in (initial, final)):
-        return None
     try:
         pairs = tuple(
             replace(
@@ -116,15 +135,15 @@ def _fitted(initial: IFS, final: IFS, stored_pairs: tuple) -> tuple[Pair, ...] |
 
 def _exact(symmetry, ifs: IFS):
     """Return the symmetry of a shape that is nearest; raises IFSError if none is near."""
-    if symmetry == IDENTITY:
+    if symmetry == no_symmetry(ifs.DIMENSION):
         return symmetry
     return _rows(symmetries_of(ifs)[_index(symmetry, ifs)].tolist())
 
 
 def _index(symmetry, ifs: IFS) -> int:
-    known = symmetries_of(ifs)
-    scale = np.array([1, 1, max(ifs.enclosing_disc[1], np.abs(np.array(symmetry)[:, 2]).max(), 1e-300)])
-    apart = np.abs((known - np.array(symmetry)) / scale).max(axis=(1, 2))
+    known, given = symmetries_of(ifs), as_map(symmetry, ifs)
+    scale = np.append(np.ones(ifs.DIMENSION), max(ifs.enclosing_disc[1], np.abs(given[:, -1]).max(), 1e-300))
+    apart = np.abs((known - given) / scale).max(axis=(1, 2))
     if not apart.min() < NEAR:
         raise IFSError(OUTDATED)
     return int(np.argmin(apart))
@@ -139,7 +158,7 @@ def next_symmetry(ifs: IFS, symmetry) -> tuple:
         If the shape has no symmetry but that one, or no attractor.
     """
     known = symmetries_of(ifs)
-    if len(known) == 1 and symmetry == IDENTITY:
+    if len(known) == 1 and symmetry == no_symmetry(ifs.DIMENSION):
         raise IFSError("This shape has no symmetries: no turn or mirroring takes it to itself.")
     try:
         index = _index(symmetry, ifs)
@@ -150,7 +169,7 @@ def next_symmetry(ifs: IFS, symmetry) -> tuple:
 
 @lru_cache(maxsize=16)
 def symmetries_of(ifs: IFS) -> np.ndarray:
-    """Symmetries (G, 2, 3) of a shape, the identity first; raises IFSError without an attractor."""
+    """Symmetries (G, 2, 3), or (G, 3, 4), of a shape, the identity first; raises IFSError without an attractor."""
     ifs.require_attractor()
     return symmetries(ifs)
 
@@ -184,9 +203,12 @@ def write(matching, pairs: Sequence[Pair], locked: Sequence[bool]) -> None:
             ) from error
     while len(collection) < len(pairs):
         collection.add()
+    dimension = _dimension(matching)
     for item, pair, lock in zip(collection, pairs, locked, strict=True):
-        values = (text_of(pair.initial), text_of(pair.final), pair.initial_symmetry, pair.final_symmetry)
-        _fill(item, dict(zip(STORED, (*values, pair.winding or 0, lock), strict=True)))
+        values = {"initial": text_of(pair.initial), "final": text_of(pair.final)}
+        for name, symmetry in zip(SYMMETRIES[dimension], (pair.initial_symmetry, pair.final_symmetry), strict=True):
+            values[name] = no_symmetry(dimension) if symmetry in (None, IDENTITY) else symmetry
+        _fill(item, {**values, "winding": pair.winding or 0, "locked": lock})
     matching.active_index = max(0, min(matching.active_index, len(pairs) - 1))
 
 
@@ -200,8 +222,8 @@ def exchange_maps(matching, end: str, first: int, second: int) -> None:
 
 def _values(item) -> dict:
     # Matrices would follow the item, and be gone with it.
-    symmetries = _rows(item.initial_symmetry), _rows(item.final_symmetry)
-    return dict(zip(STORED, (item.initial, item.final, *symmetries, item.winding, item.locked), strict=True))
+    symmetries = {name: _rows(getattr(item, name)) for names in SYMMETRIES.values() for name in names}
+    return {name: getattr(item, name) for name in STORED} | symmetries
 
 
 def _fill(item, values: dict) -> None:

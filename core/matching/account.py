@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from ..connectedness import Connectedness
 from ..report import FrameCheck, PathReport
-from .pairs import Pair, symmetry_text
+from .pairs import Pair
+from .wording import symmetry_text
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +68,8 @@ class MatchReport:
 
     @property
     def flips(self) -> tuple[int, ...]:
-        """Pairs whose map reflects at one end only."""
-        return self.path.flips
+        """Pairs whose map reflects at one end only, whether it is flattened or turns over."""
+        return self.path.flips + self.path.turned_over
 
     def text(self) -> str:
         """The report in a few plain sentences, a line each."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..ifs import IFS, IFSError
 from .expansion import Word, is_cover, parts
-from .pairs import Pair, Symmetry
+from .pairs import Pair, Symmetry, as_map
 from .problem import Lock
 
 SAME = 1e-6
@@ -73,8 +73,8 @@ def locks_of(pairs: Sequence[Pair], ends: Sequence) -> tuple[Lock, ...]:
 def _index(symmetry: Symmetry | None, ifs: IFS, symmetries: np.ndarray) -> int | None:
     if symmetry is None:
         return None
-    scale = np.array([1, 1, max(ifs.enclosing_disc[1], 1e-300)])
-    apart = np.abs((symmetries - np.array(symmetry)) / scale).max(axis=(1, 2))
+    scale = np.append(np.ones(ifs.DIMENSION), max(ifs.enclosing_disc[1], 1e-300))
+    apart = np.abs((symmetries - as_map(symmetry, ifs)) / scale).max(axis=(1, 2))
     if apart.min() > SAME:
         raise IFSError("A locked pair turns or mirrors a map by what is no symmetry of its shape; open or reset it.")
     return int(np.argmin(apart))

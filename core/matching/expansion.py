@@ -15,7 +15,7 @@ Word = tuple[int, ...]
 
 
 def word_map(ifs: IFS, word: Word) -> np.ndarray:
-    """The composition (2, 3) of the maps that a word names, the last one applied first."""
+    """The composition (2, 3), or (3, 4), of the maps that a word names, the last one applied first."""
     composed = ifs.maps[word[0]]
     for letter in word[1:]:
         composed = compose(composed, ifs.maps[letter])
@@ -45,7 +45,9 @@ def split_to(ifs: IFS, count: int) -> list[Word]:
     words = [(i,) for i in range(ifs.count)]
     while True:
         # A word that only one letter may follow gains nothing.
-        sizes = [singular_values(word_map(ifs, word)[:, :2])[0] if len(parts(ifs, word)) > 1 else 0.0 for word in words]
+        splits = [len(parts(ifs, word)) > 1 for word in words]
+        norms = [singular_values(word_map(ifs, word)[:, :-1])[0] for word in words]
+        sizes = [norm if split else 0.0 for norm, split in zip(norms, splits, strict=True)]
         # Sizes that differ by rounding alone are equal, and the first of them goes.
         largest = int(np.argmax(np.array(sizes) > max(sizes) * (1 - 1e-9)))
         split = parts(ifs, words[largest])

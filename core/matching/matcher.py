@@ -14,6 +14,7 @@ from ..ifs import IFS, IFSError
 from ..morph import Morph, spread
 from ..path import Path, plan_path_steps
 from ..report import check_frames_steps
+from ..space.lifting import in_one_space
 from .account import MatchReport
 from .constraints import settled_words
 from .expansion import Word
@@ -86,6 +87,7 @@ def match(
     initial_words: Sequence[Word] | None = None,
     final_words: Sequence[Word] | None = None,
     scheme: str | None = None,
+    flip: str = "projected",
     budget: int = BUDGET,
     threads: int | None = None,
     progress: Callable[[float], bool | None] | None = None,
@@ -96,7 +98,7 @@ def match(
     Parameters
     ----------
     initial, final : IFS
-        Any two with attractors; their numbers of maps and orientations may differ.
+        Any two with attractors, of the plane or of space; their numbers of maps and orientations may differ.
     frames : int
         Of the animation; each is checked.
     tolerance : float
@@ -108,6 +110,9 @@ def match(
     scheme : str, optional
         Of the morph, see `morph.SCHEMES`; by default the polar one, or the log-polar where that swells less. The search
         itself goes by the polar one.
+    flip : str
+        What becomes of a map of the plane that reflects at one end only, where neither symmetries nor splits mend that,
+        see `space.lifting.FLIPS`. The search itself goes by the projected one.
     budget : int
         Work of the search. It is counted, not timed: the result is the same on every machine, for any number of
         threads.
@@ -131,7 +136,7 @@ def match(
         If there are fewer than 2 frames or the tolerance is not above 0.
     """
     steps = match_steps(
-        initial, final, frames, tolerance, locked, initial_words, final_words, scheme, budget, threads, found
+        initial, final, frames, tolerance, locked, initial_words, final_words, scheme, flip, budget, threads, found
     )
     return parallel.finish(steps, progress)
 
@@ -145,6 +150,7 @@ def match_steps(
     initial_words: Sequence[Word] | None = None,
     final_words: Sequence[Word] | None = None,
     scheme: str | None = None,
+    flip: str = "projected",
     budget: int = BUDGET,
     threads: int | None = None,
     found: Callable[[Match], None] | None = None,
@@ -154,6 +160,7 @@ def match_steps(
         raise ValueError(f"A morph over {frames} frames cannot be matched; it needs 2 or more.")
     if not tolerance > 0:
         raise ValueError(f"The tolerance is {tolerance:g}; it must be above 0.")
+    initial, final = in_one_space(initial, final)
     initial.require_attractor()
     final.require_attractor()
     settled = (
@@ -163,7 +170,7 @@ def match_steps(
     free = not locked and settled == (None, None)
 
     naive = tuple(Pair((k % initial.count,), (k % final.count,)) for k in range(max(initial.count, final.count)))
-    naive_morph = morph_of_pairs(initial, final, naive)
+    naive_morph = morph_of_pairs(initial, final, naive, flip=flip)
     straight = yield from parallel.part(
         plan_path_steps(naive_morph, None, frames, tolerance, "straight", threads), 0.0, 0.05
     )
@@ -233,14 +240,16 @@ def match_steps(
         if backwards:
             pairs = reversed_pairs(final, initial, pairs)
         try:
-            morph = morph_of_pairs(initial, final, pairs, chosen)
+            morph = morph_of_pairs(initial, final, pairs, chosen, flip)
         except IFSError:
             # Flat maps have no logarithm.
             if scheme is not None:
                 raise
             continue
         plannable = whole and morph.count * (RECURRENT_MAPS if morph.is_recurrent else 1) <= PLANNED_MAPS
-        if method != "straight" and not plannable:
+        # In space the rest takes too long.
+        passed_by = morph.DIMENSION == 3 and (method == "per map" or chosen != schemes[0])
+        if passed_by or (method != "straight" and not plannable):
             continue
         planning = plan_path_steps(morph, None, frames, tolerance, method, threads)
         at = 0.7 + 0.3 * rank / len(plans)
@@ -289,7 +298,8 @@ def _verified_steps(
 ) -> Generator[float, None, list[tuple[float, Candidate]]]:
     """Search, check densely, and search on with the times that the samples had missed; the best and their costs."""
     begun = problem.work
-    times = np.arange(1, 2 * (frames - 1)) / (2 * (frames - 1))
+    checks = max(2, problem.scoring.CHECKS * (frames - 1))
+    times = np.arange(1, checks) / checks
     kept: list[tuple[float, Candidate]] = []
     start = None
     for _ in range(ROUNDS):

@@ -9,15 +9,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..affine import compose, determinant
+from ..affine import compose
 from ..ifs import IFS, IFSError
 from ..morph import Morph
+from ..space.lifting import in_one_space, morph_between
 from .expansion import Word, is_cover, word_map, word_weight
 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
-"""The symmetry that every shape has."""
+"""The symmetry that every shape has; it stands for that of space as well."""
 
-Symmetry = tuple[tuple[float, float, float], tuple[float, float, float]]
+Symmetry = tuple[tuple[float, ...], ...]
+"""Rows of a map: two of three numbers, in space three of four."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Pair:
     initial, final : tuple of int
         Words: (2,) is map 2, counted from 0, as it is; (2, 0) is the part of it that map 0 makes, after a split. A word
         may be in several pairs: then it is listed twice or more, and its weight shared.
-    initial_symmetry, final_symmetry : ((a, b, e), (c, d, f)), or None
+    initial_symmetry, final_symmetry : ((a, b, e), (c, d, f)), in space three rows of four, or None
         A map that takes the end's attractor to itself, applied before the word's. None leaves it open, in a lock.
     winding : int or None
         Whole turns beyond the shorter way round. None leaves it open, in a lock.
@@ -73,18 +75,28 @@ def pairs_from_plain(plain: Sequence[dict]) -> tuple[Pair, ...]:
     return tuple(Pair.from_plain(each) for each in plain)
 
 
-def morph_of_pairs(initial: IFS, final: IFS, pairs: Sequence[Pair], scheme: str = "polar") -> Morph:
+def morph_of_pairs(
+    initial: IFS, final: IFS, pairs: Sequence[Pair], scheme: str = "polar", flip: str = "projected"
+) -> Morph:
     """The morph that pairs stand for, without any search.
 
     Its ends have one map a pair, or several where the shapes allow different transitions (see `joining`), and the same
-    attractors as the shapes given.
+    attractors as the shapes given. A shape of the plane that becomes one of space, or the other way round, lies in
+    space too, and so do its symmetries.
+
+    Parameters
+    ----------
+    initial, final, pairs
+    scheme, flip : str
+        See `space.lifting.morph_between`.
 
     Raises
     ------
     IFSError
         If a pair names a map that there is not, or a piece of a shape is in no pair.
     """
-    return Morph(*_ends(initial, final, pairs), scheme, np.array([pair.winding or 0 for pair in pairs]))
+    winding = np.array([pair.winding or 0 for pair in pairs])
+    return morph_between(*_ends(*in_one_space(initial, final), pairs), scheme, winding, flip)
 
 
 def reversed_pairs(initial: IFS, final: IFS, pairs: Sequence[Pair]) -> tuple[Pair, ...]:
@@ -107,16 +119,14 @@ def shares(words: Sequence[Word]) -> np.ndarray:
     return np.array([1 / counts[word] for word in words])
 
 
-def symmetry_text(symmetry: Symmetry | None) -> str:
-    """A symmetry in words: ``turned by 120°``, ``mirrored at 90°``, or nothing for the identity."""
-    if symmetry is None:
-        return "any"
-    linear = np.array(symmetry)[:, :2]
-    degrees = round(float(np.degrees(np.arctan2(linear[1, 0], linear[0, 0]))), 1)
-    if determinant(linear) < 0:
-        # The axis lies at half the angle.
-        return f"mirrored at {degrees / 2 % 180:g}°"
-    return f"turned by {degrees:g}°" if degrees else ""
+def as_map(symmetry: Symmetry | None, ifs: IFS) -> np.ndarray:
+    """A symmetry of a shape as a map (2, 3), or (3, 4) in space; the identity if it is open."""
+    if symmetry is None or symmetry == IDENTITY:
+        return np.eye(ifs.DIMENSION, ifs.DIMENSION + 1)
+    rows = np.array(symmetry, dtype=float)
+    if rows.shape != ifs.maps.shape[1:]:
+        raise IFSError("A pair turns a map by what is no symmetry of its shape; match again, or reset it.")
+    return rows
 
 
 def _ends(initial: IFS, final: IFS, pairs: Sequence[Pair]) -> tuple[IFS, IFS]:
@@ -136,15 +146,15 @@ def _end(ifs: IFS, listed: list[tuple[Word, Symmetry | None]], name: str) -> IFS
             f"The pairs do not make up the whole {name} shape; match again, or add the maps that are missing."
         )
     maps = np.array([word_map(ifs, word) for word in words])
-    gauges = np.array([IDENTITY if symmetry is None else symmetry for _, symmetry in listed], dtype=float)
+    gauges = np.array([as_map(symmetry, ifs) for _, symmetry in listed])
     weights = np.array([word_weight(ifs, word) for word in words]) * shares(words)
     # Split often enough, weights of zero alone may be left.
     weights = weights if weights.sum() > 0 else None
-    if ifs.is_recurrent and not (gauges == np.array(IDENTITY)).all():
+    if ifs.is_recurrent and not (gauges == as_map(None, ifs)).all():
         raise IFSError(
             f"The {name} shape is recurrent: no symmetry may turn its maps; match again, or clear the pairs."
         )
-    return IFS(compose(maps, gauges), weights, ifs.name, _transitions(ifs, words))
+    return type(ifs)(compose(maps, gauges), weights, ifs.name, _transitions(ifs, words))
 
 
 def _transitions(ifs: IFS, words: list[Word]) -> np.ndarray | None:

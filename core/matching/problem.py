@@ -7,21 +7,19 @@ from functools import total_ordering
 
 import numpy as np
 
-from ..affine import compose
+from ..affine import compose, rotation, transform
 from ..ifs import IFS
+from . import scoring, space_scoring
 from .assignment import assign
 from .expansion import Word, word_map
 from .pairs import Pair
-from .scoring import MEAN, WORST, Table, golden_samples, score
+from .scoring import MEAN, WORST, golden_samples
 
 SAMPLES = 12
 """Times looked at for every candidate."""
 
 CLUTTER = 0.03
 """What it costs to list one pair more than needed."""
-
-TURNS = 4
-"""Ways to turn the final shape before its pieces are assigned to those nearby."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +29,7 @@ class End:
     Attributes
     ----------
     ifs : IFS
-    symmetries : (G, 2, 3)
+    symmetries : (G, 2, 3), or (G, 3, 4)
         Of its attractor, the identity first.
     words : list of Word
         Each at least once in every candidate.
@@ -42,9 +40,9 @@ class End:
     words: list[Word]
 
     def maps(self) -> np.ndarray:
-        """All words through all symmetries (W * G, 2, 3)."""
+        """All words through all symmetries (W * G, 2, 3), or (W * G, 3, 4)."""
         maps = np.array([word_map(self.ifs, word) for word in self.words])
-        return compose(maps[:, None], self.symmetries[None]).reshape(-1, 2, 3)
+        return compose(maps[:, None], self.symmetries[None]).reshape(-1, *self.symmetries.shape[1:])
 
 
 @dataclass(frozen=True)
@@ -107,7 +105,8 @@ class Problem:
         self.ends = (initial, final)
         self.tolerance, self.threads, self.locks = tolerance, threads, locks
         self.maps = [end.maps() for end in self.ends]
-        self.tables = [Table.of(maps) for maps in self.maps]
+        self.scoring = scoring if initial.ifs.DIMENSION == 2 else space_scoring
+        self.tables = [self.scoring.Table.of(maps) for maps in self.maps]
         self.sizes = [len(end.symmetries) for end in self.ends]
         self.word_counts = [len(end.words) for end in self.ends]
         self.locked = len(locks)
@@ -129,12 +128,8 @@ class Problem:
         return pair >= self.locked or self.locks[pair].winding is None
 
     def evaluate(self, starts: list[tuple[np.ndarray, np.ndarray]]) -> list[Candidate]:
-        """Candidates of rows and windings."""
-        order = np.arange(len(self.samples))
-        found: list[Candidate] = []
-        for rows, winding in starts:
-            found += self._scored([(rows, winding)], np.inf, order)
-        return found
+        """Candidates of rows and windings, all of as many pairs."""
+        return self._scored(starts, np.inf, np.arange(len(self.samples)))
 
     def best_of(self, batch: list[tuple[np.ndarray, np.ndarray]], best: Candidate) -> Candidate:
         """The best of a batch, or `best` if none is better."""
@@ -178,7 +173,9 @@ class Problem:
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Scores and swells as `scoring.score` gives them, and the work."""
         count = rows.shape[2]
-        scores, swells, work = score(*self.tables, rows, winding, samples, self.tolerance, bound, extra, self.threads)
+        scores, swells, work = self.scoring.score(
+            *self.tables, rows, winding, samples, self.tolerance, bound, extra, self.threads
+        )
         return scores, swells, work * count * (count - 1) // 2
 
     def pairs(self, candidate: Candidate) -> tuple[Pair, ...]:
@@ -200,7 +197,7 @@ class Problem:
     def starts(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Rows and windings to start from: the given order, and the assignments of least motion."""
         given = [self._filled(end) for end in (0, 1)]
-        turned = [self._assigned(*given, 2 * np.pi * turn / TURNS) for turn in range(TURNS)]
+        turned = [self._assigned(*given, turn) for turn in _turns(self.ends[0].ifs.DIMENSION)]
         found = [self._complete(given[0], final) for final in (given[1], *turned)]
         different = {tuple(rows.ravel()): (rows, winding) for rows, winding in found}
         return list(different.values())
@@ -231,20 +228,26 @@ class Problem:
         winding[: self.locked] = [lock.winding or 0 for lock in self.locks]
         return rows, winding
 
-    def _assigned(self, first: np.ndarray, last: np.ndarray, angle: float) -> np.ndarray:
+    def _assigned(self, first: np.ndarray, last: np.ndarray, turn: np.ndarray) -> np.ndarray:
         """The final rows in the order of least motion, through the symmetry nearest, if the final shape were turned.
 
-        Pieces are compared by the images of a frame, in units of the enclosing discs.
+        Pieces are compared by the images of a frame, in units of the enclosing discs or balls.
         """
+        dimension = len(turn)
         images = []
         for end, maps in zip(self.ends, self.maps, strict=True):
             center, radius = end.ifs.enclosing_disc
-            frame = center + np.array([[0, 0], [0.5, 0], [0, 0.5]]) * radius
-            placed = np.einsum("eij,pj->epi", maps[:, :, :2], frame) + maps[:, None, :, 2]
-            images.append((placed - center) / (radius or 1.0))
-        cos, sin = np.cos(angle), np.sin(angle)
+            frame = center + radius / 2 * np.eye(dimension + 1, dimension, -1)
+            images.append((transform(maps[:, None], frame) - center) / (radius or 1.0))
         start = images[0][first]
-        gauged = (images[1] @ np.array([[cos, sin], [-sin, cos]])).reshape(-1, self.sizes[1], 3, 2)
+        gauged = (images[1] @ turn.T).reshape(-1, self.sizes[1], dimension + 1, dimension)
         apart = ((start[:, None, None] - gauged[last // self.sizes[1]]) ** 2).sum(axis=(-1, -2))
         to = assign(apart.min(axis=2))
         return last[to] + apart.argmin(axis=2)[np.arange(len(to)), to]
+
+
+def _turns(dimension: int) -> np.ndarray:
+    """Ways (T, D, D) to turn a shape before its pieces are assigned: by quarters, in space by halves about the axes."""
+    if dimension == 2:
+        return rotation(np.pi / 2 * np.arange(4))
+    return np.array([np.diag(signs) for signs in ((1, 1, 1), (-1, -1, 1), (-1, 1, -1), (1, -1, -1))])

@@ -60,13 +60,13 @@ def _has_to_be_split(end: End, other: End) -> bool:
 
     Parts of a map that reflects, within a shape whose maps all do, do not.
     """
-    mirrored = any((determinant(each.symmetries[:, :, :2]) < 0).any() for each in (end, other))
+    mirrored = any((determinant(each.symmetries[:, :, :-1]) < 0).any() for each in (end, other))
     return not mirrored and _reflecting(end) == {True} and _reflecting(other) != {True}
 
 
 def _reflecting(end: End) -> set[bool]:
     """Whether the maps of an end reflect; flat ones are as the others need."""
-    linear = np.array([word_map(end.ifs, word)[:, :2] for word in end.words])
+    linear = np.array([word_map(end.ifs, word)[:, :-1] for word in end.words])
     values = singular_values(linear)
     flat = values[:, 1] <= SINGULAR * values[:, 0]
     return set((determinant(linear) < 0)[~flat].tolist())

@@ -37,6 +37,9 @@ THINNEST = 0.02
 
 CHUNK = 4
 
+CHECKS = 2
+"""Times a frame at which what was found is checked."""
+
 
 @dataclass(frozen=True, eq=False)
 class Table:

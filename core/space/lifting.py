@@ -37,6 +37,21 @@ def lift(ifs: IFS) -> SpaceIFS:
     return SpaceIFS(maps, ifs.weights, ifs.name)
 
 
+def in_one_space(initial: IFS, final: IFS) -> tuple[IFS, IFS]:
+    """Two shapes of the same number of dimensions: one of the plane beside one of space is put into space."""
+    if initial.DIMENSION == final.DIMENSION:
+        return initial, final
+    return tuple(lift(ifs) if ifs.DIMENSION == 2 else ifs for ifs in (initial, final))
+
+
+class LiftedMorph(SpaceMorph):
+    """The morph between two shapes of the plane that goes through space, for some of its maps flip."""
+
+    def __init__(self, plane: Morph) -> None:
+        super().__init__(lift(plane.initial), lift(plane.final), plane.scheme, plane.winding)
+        self.turned_over = plane.flips
+
+
 def morph_between(
     initial: IFS, final: IFS, scheme: str = "polar", winding: np.ndarray | None = None, flip: str = "projected"
 ) -> Morph:
@@ -56,9 +71,9 @@ def morph_between(
     """
     if flip not in FLIPS:
         raise IFSError(f"There is no flip “{flip}”; choose one of {', '.join(FLIPS)}.")
-    if initial.DIMENSION == final.DIMENSION == 2:
-        morph = Morph(initial, final, scheme, winding)
-        if flip == "projected" or not morph.flips or morph.is_recurrent:
-            return morph
-    initial, final = (lift(ifs) if ifs.DIMENSION == 2 else ifs for ifs in (initial, final))
-    return SpaceMorph(initial, final, scheme, winding)
+    initial, final = in_one_space(initial, final)
+    if initial.DIMENSION == 3:
+        return SpaceMorph(initial, final, scheme, winding)
+    morph = Morph(initial, final, scheme, winding)
+    turns = flip == "turned" and scheme != "elementwise" and not morph.is_recurrent
+    return LiftedMorph(morph) if turns and morph.flips else morph

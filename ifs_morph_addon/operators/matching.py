@@ -8,7 +8,7 @@ from ...core.ifs import IFSError
 from ...core.matching import BUDGET, match_steps
 from ...core.morph import SCHEMES
 from .. import pairs
-from ..conversion import core_name, identifier, shape_ifs, tolerance
+from ..conversion import core_name, flip_of, identifier, shapes_of, tolerance
 from ..property_options import window_held
 from ..tasks import LongTask
 from .path import key_path, keying_problem, tell
@@ -36,7 +36,7 @@ class _Match(LongTask):
     def work(self, context):
         """Search, then keep what was found."""
         settings = context.object.ifs_morph
-        initial, final = shape_ifs(settings.initial), shape_ifs(settings.final)
+        initial, final = shapes_of(settings)
         locked = ()
         if any(item.locked for item in settings.matching.pairs):
             fitted = pairs.fitted(initial, final, settings.matching)
@@ -50,6 +50,7 @@ class _Match(LongTask):
             tolerance(settings),
             locked,
             scheme=None if _is_open(settings) else core_name(settings.scheme, SCHEMES),
+            flip=flip_of(settings),
             budget=WORK[settings.matching.budget],
             found=self._found,
         )

@@ -7,7 +7,7 @@ import bpy
 from ...core.ifs import IFSError
 from ...core.matching.expansion import parts
 from .. import pairs
-from ..conversion import shape_ifs
+from ..conversion import shapes_of
 from ..property_options import window_held
 from .poll import ENDS, editable_morph
 
@@ -80,10 +80,8 @@ class IFSMORPH_OT_pair_symmetry(_PairOperator, bpy.types.Operator):
 
     def change(self, settings, listed, locks, active):
         """Go on to the next symmetry, and from the last one to none."""
-        shape, field = (
-            (settings.initial, "initial_symmetry") if self.end == "INITIAL" else (settings.final, "final_symmetry")
-        )
-        following = pairs.next_symmetry(shape_ifs(shape), getattr(listed[active], field))
+        shape, field = shapes_of(settings)[self.end == "FINAL"], f"{self.end.lower()}_symmetry"
+        following = pairs.next_symmetry(shape, getattr(listed[active], field))
         listed[active] = replace(listed[active], **{field: following})
         return active
 

@@ -6,8 +6,11 @@ import pytest
 from scipy.spatial import cKDTree
 
 from core.cloud import point_cloud
+from core.matching.symmetry import symmetries
+from core.shapes import SHAPES
 from core.space.morph import SpaceMorph
 from core.space.shapes import SPACE_SHAPES
+from tests.addon.interface import reason, sidebar
 from tests.addon.support import add, attribute, picture, show
 
 FERN = """
@@ -119,3 +122,88 @@ def test_maps_that_flip_turn_over_through_space(scene):
         owner.ifs_morph.uv = end, end
         show()
         assert np.ptp(attribute(owner, "position")[:, 2]) == pytest.approx(0, abs=1e-6)
+
+
+def test_one_press_morphs_shapes_in_space(scene, extension):
+    owner = add("POINTS")
+    owner.ifs_morph.path.frame_end = 12
+    load("Sierpinski tetrahedron", "pyramid")
+    assert "press Morph" in sidebar(owner, extension)
+    assert bpy.ops.ifs_morph.morph() == {"FINISHED"}
+    assert len(owner.ifs_morph.matching.pairs) >= 5
+    assert "frames, all in one piece" in owner.ifs_morph.path.report
+    for u, name in ((0, "Sierpinski tetrahedron"), (1, "pyramid")):
+        morph = extension.ifs_morph_addon.conversion.morph_of(owner.ifs_morph)
+        np.testing.assert_allclose(morph.at(u, u).bounds, SPACE_SHAPES[name].bounds, atol=1e-3)
+    assert bpy.ops.ifs_morph.plan_path.poll()
+    # A shape of the plane is put into space for it.
+    load("gasket", "pyramid")
+    assert bpy.ops.ifs_morph.match_pairs() == {"FINISHED"}
+    show()
+    assert np.ptp(attribute(owner, "position")[:, 2]) == pytest.approx(0, abs=1e-6)
+
+
+def test_symmetries_of_space_are_kept_and_said(tetrahedra, extension):
+    settings, pairs = tetrahedra.ifs_morph, extension.ifs_morph_addon.pairs
+    settings.path.frame_end = 12
+    bpy.ops.ifs_morph.match_pairs()
+    conversion = extension.ifs_morph_addon.conversion
+    stored, match = conversion.current_pairs(settings), matched(settings, extension)
+    assert stored == match.pairs
+    item = settings.matching.pairs[0]
+    settings.matching.active_index = 0
+    texts = set()
+    for _ in range(24):
+        bpy.ops.ifs_morph.pair_symmetry(end="FINAL")
+        texts.add(pairs.described(item))
+    assert len(texts) == 24
+    assert sum("turned by 180° about" in text for text in texts) == 3
+    assert conversion.pairs_problem(settings) == ""
+    bpy.ops.ifs_morph.pair_split(end="INITIAL")
+    assert conversion.pairs_problem(settings) == ""
+    settings.initial.maps[0].matrix_in_space[0][3] += 0.01
+    bpy.ops.ifs_morph.clear_pairs()
+    assert len(settings.matching.pairs) == 0
+
+
+def matched(settings, extension):
+    """Return the match that the button makes."""
+    conversion = extension.ifs_morph_addon.conversion
+    return extension.core.matching.match(
+        *conversion.shapes_of(settings), settings.path.frame_end - settings.path.frame_start + 1, flip="turned"
+    )
+
+
+def test_images_of_shapes_in_space_are_not_matched(scene):
+    owner = add("IMAGE")
+    owner.ifs_morph.initial.in_space = True
+    assert "point cloud" in reason(bpy.ops.ifs_morph.morph)
+
+
+def test_pairs_that_flip_turn_over_among_points(scene, extension):
+    owner = add("POINTS")
+    load("gasket", "gasket")
+    for name in "123":
+        item = owner.ifs_morph.matching.pairs.add()
+        item.initial = item.final = name
+    owner.ifs_morph.path.method = "STRAIGHT"
+    item.final_symmetry = tuple(map(tuple, mirroring(SHAPES["gasket"])))
+    assert bpy.ops.ifs_morph.plan_path() == {"FINISHED"}
+    assert "Turned over through space, since only one end reflects: map 3." in owner.ifs_morph.path.report
+    for u, height in ((0, 0), (0.5, 0.1), (1, 0)):
+        owner.animation_data_clear()
+        owner.ifs_morph.uv = u, u
+        show()
+        found = np.ptp(attribute(owner, "position")[:, 2])
+        assert found > height if height else found == pytest.approx(0, abs=1e-6)
+    fingerprint = extension.ifs_morph_addon.conversion.fingerprint
+    before = fingerprint(owner.ifs_morph)
+    owner.ifs_morph.flip = "PROJECTED"
+    assert fingerprint(owner.ifs_morph) != before
+    assert bpy.ops.ifs_morph.plan_path() == {"FINISHED"}
+    assert "Flattened half-way, since only one end reflects: map 3." in owner.ifs_morph.path.report
+
+
+def mirroring(ifs):
+    """Return a symmetry of a shape that reflects."""
+    return next(each for each in symmetries(ifs) if np.linalg.det(each[:, :2]) < 0).tolist()

@@ -1,6 +1,7 @@
 """Every shape of the library into every other: how well the matching does, pair by pair.
 
-Run by ``make bench-pairs``; writes a table of all pairs into out/pairs.md, and the same figures into out/pairs.json.
+Run by ``make bench-pairs``; writes tables of all pairs, in the plane and in space, into out/pairs.md, and the same
+figures into out/pairs.json.
 The frames of the keyed paths are checked by the plain reference of the tests, which shares no code with the source.
 """
 
@@ -18,7 +19,9 @@ sys.path.insert(0, str(ROOT))
 from core.connectedness import Connectedness, connectedness  # noqa: E402
 from core.matching import match  # noqa: E402
 from core.shapes import SHAPES  # noqa: E402
+from core.space.shapes import SPACE_SHAPES  # noqa: E402
 from tests.core.reference import in_pieces  # noqa: E402
+from tests.core.space.reference import in_pieces as in_pieces_in_space  # noqa: E402
 
 FRAMES = 240
 TOLERANCE = 1 / 300
@@ -26,13 +29,13 @@ POINTS = 4000
 """Of the reference, for one shape."""
 
 
-def measure(initial, final, checked):
+def measure(initial, final, checked, shapes, in_pieces):
     """Return the figures of one pair, and how many of `checked` frames the reference finds in pieces."""
     start, processor = time.perf_counter(), time.process_time()
     first = []
     found = match(
-        SHAPES[initial],
-        SHAPES[final],
+        shapes[initial],
+        shapes[final],
         FRAMES,
         TOLERANCE,
         found=lambda _: first.append(time.perf_counter() - start),
@@ -44,7 +47,7 @@ def measure(initial, final, checked):
     return {
         "initial": initial,
         "final": final,
-        "maps": [SHAPES[initial].count, SHAPES[final].count],
+        "maps": [shapes[initial].count, shapes[final].count],
         "pairs": len(found.pairs),
         "frames not in one piece": report.disconnected,
         "found in pieces by the reference": int(sum(in_pieces(maps, TOLERANCE, POINTS) for maps in shown)),
@@ -98,6 +101,9 @@ def summary(rows):
     ]
 
 
+KINDS = {"plane": (SHAPES, in_pieces), "space": (SPACE_SHAPES, in_pieces_in_space)}
+"""Shapes and the reference for them."""
+
 TEXT = ("initial", "final", "maps")
 SHOWN = {
     "initial": "initial",
@@ -134,22 +140,32 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--every", type=int, default=1, help="take every so many-th pair only")
     parser.add_argument("--checked", type=int, default=24, help="frames a pair that the reference checks")
+    parser.add_argument("--only", choices=KINDS, help="shapes of this kind only")
     options = parser.parse_args()
-    connected = [name for name, ifs in SHAPES.items() if connectedness(ifs).state == Connectedness.CONNECTED]
-    pairs = [(one, other) for one in connected for other in connected if one != other][:: options.every]
-    # The first match compiles the kernels.
-    match(SHAPES["gasket"], SHAPES["terdragon"])
-    rows = []
-    for count, pair in enumerate(pairs, 1):
-        rows.append(measure(*pair, options.checked))
-        sys.stderr.write(f"\r{count} of {len(pairs)}")
-    lines = summary(rows)
-    print("\n".join(["", *lines]))
+    found, text = {}, []
+    for kind in [options.only] if options.only else KINDS:
+        rows = measured(*KINDS[kind], options.every, options.checked)
+        lines = summary(rows)
+        print("\n".join(["", *lines]))
+        found[kind] = {"summary": lines, "pairs": rows}
+        text += [f"# Every shape of the {kind} into every other", "", *lines, "", *table(rows), ""]
     out = ROOT / "out"
     out.mkdir(exist_ok=True)
-    (out / "pairs.json").write_text(json.dumps({"summary": lines, "pairs": rows}, indent=1), encoding="utf-8")
-    text = ["# Every shape into every other", "", *lines, "", *table(rows), ""]
+    (out / "pairs.json").write_text(json.dumps(found, indent=1), encoding="utf-8")
     (out / "pairs.md").write_text("\n".join(text), encoding="utf-8")
+
+
+def measured(shapes, in_pieces, every, checked):
+    """Return the figures of the pairs of connected shapes, of each `every`-th."""
+    connected = [name for name, ifs in shapes.items() if connectedness(ifs).state == Connectedness.CONNECTED]
+    pairs = [(one, other) for one in connected for other in connected if one != other][::every]
+    # The first match compiles the kernels.
+    match(shapes[connected[1]], shapes[connected[0]])
+    rows = []
+    for count, pair in enumerate(pairs, 1):
+        rows.append(measure(*pair, checked, shapes, in_pieces))
+        sys.stderr.write(f"\r{count} of {len(pairs)}")
+    return rows
 
 
 if __name__ == "__main__":

@@ -9,12 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
+from core.cloud import point_cloud
 from core.ifs import IFSError
-from core.matching import Pair, morph_of_pairs, pairs_from_plain, pairs_to_plain, symmetry_text
+from core.matching import Pair, morph_of_pairs, pairs_from_plain, pairs_to_plain
 from core.matching.expansion import split_to
-from core.matching.pairs import reversed_pairs
+from core.matching.pairs import IDENTITY, reversed_pairs
 from core.matching.symmetry import symmetries
 from core.shapes import SHAPES
+from core.space.lifting import FLIPS, in_one_space
+from core.space.shapes import SPACE_SHAPES
 from tests.core.reference import at, dense
 
 
@@ -105,7 +108,36 @@ def test_pairs_that_fit_no_more_say_so(pairs):
         morph_of_pairs(SHAPES["gasket"], SHAPES["terdragon"], pairs)
 
 
-def test_symmetries_have_names():
-    texts = {symmetry_text(as_tuple(symmetry)) for symmetry in symmetries(SHAPES["square"])}
-    assert {"", "turned by 90°", "turned by -90°", "turned by 180°", "mirrored at 0°", "mirrored at 90°"} <= texts
-    assert symmetry_text(None) == "any"
+@pytest.mark.parametrize("flip", FLIPS)
+def test_a_pair_that_flips_turns_over_or_is_flattened(flip):
+    """The gasket through one mirroring of it, for one map: that one must flip."""
+    mirroring = next(each for each in symmetries_of("gasket") if np.linalg.det(each[:, :2]) < 0)
+    pairs = [Pair((k,), (k,), final_symmetry=as_tuple(mirroring) if k == 1 else IDENTITY) for k in range(3)]
+    morph = morph_of_pairs(SHAPES["gasket"], SHAPES["gasket"], pairs, flip=flip)
+    assert (morph.turned_over, morph.flips) == (((1,), ()) if flip == "turned" else ((), (1,)))
+    dimension = 3 if flip == "turned" else 2
+    assert dimension == morph.DIMENSION
+    points, spacing = points_of("gasket")
+    for u in (0, 1):
+        shown = point_cloud(morph.at(u, u), 2000).position.astype(float)
+        assert np.abs(shown[:, 2:]).max(initial=0) < 1e-6
+        assert cKDTree(points).query(shown[:, :2])[0].max() <= spacing + 1e-6
+    sizes = np.linalg.svd(morph.linear(0.5)[1], compute_uv=False)
+    assert sizes == pytest.approx([0.5] * 3 if flip == "turned" else [0.5, 0], abs=1e-12)
+
+
+def test_a_shape_of_the_plane_is_paired_with_one_in_space():
+    initial, final = SHAPES["gasket"], SPACE_SHAPES["Sierpinski tetrahedron"]
+    turn = as_tuple(symmetries(final)[3])
+    pairs = (Pair((0,), (0,)), Pair((1,), (1,), final_symmetry=turn), Pair((2,), (2,)), Pair((2,), (3,)))
+    morph = morph_of_pairs(initial, final, pairs)
+    assert np.allclose(morph.at(1, 1).linear[1], final.linear[1] @ np.array(turn)[:, :3])
+    assert (point_cloud(morph.at(0, 0), 500).position[:, 2] == 0).all()
+    back = morph_of_pairs(final, initial, reversed_pairs(*in_one_space(initial, final), pairs))
+    for u, v in ((0, 0), (0.3, 0.6), (1, 1)):
+        assert np.allclose(morph.at(u, v).maps, back.at(1 - u, 1 - v).maps, atol=1e-9)
+
+
+def test_a_symmetry_of_other_dimensions_is_said():
+    with pytest.raises(IFSError, match="no symmetry"):
+        morph_of_pairs(SHAPES["gasket"], SHAPES["gasket"], [Pair((k,), (k,), as_tuple(np.eye(3, 4))) for k in range(3)])

@@ -76,3 +76,10 @@ def longest_edge(points, letters, count):
         for j in range(i + 1, count):
             between[i, j] = 1 + trees[i].query(trees[j].data)[0].min()
     return minimum_spanning_tree(between).data.max() - 1
+
+
+def in_pieces(maps, tolerance, most=20_000):
+    """Whether there is for certain a gap wider than the tolerance, relative to the diameter of the points."""
+    points, letters, spacing = dense(maps, most)
+    diameter = np.linalg.norm(np.ptp(points, axis=0))
+    return longest_edge(points, letters, len(maps)) - 2 * spacing > tolerance * diameter
