@@ -27,7 +27,7 @@ def symmetry_text(symmetry: Symmetry | None) -> str:
     reflects = determinant(linear) < 0
     if len(linear) == 3:
         return _in_space(linear, reflects)
-    degrees = round(float(np.degrees(np.arctan2(linear[1, 0], linear[0, 0]))), 1)
+    degrees = _degrees(np.arctan2(linear[1, 0], linear[0, 0]))
     if reflects:
         # The axis lies at half the angle.
         return f"mirrored at {degrees / 2 % 180:g}°"
@@ -39,15 +39,19 @@ def _in_space(linear: np.ndarray, reflects: bool) -> str:
     (axis,), (angle,) = axis_and_angle((-linear if reflects else linear)[None])
     if reflects:
         angle = np.remainder(angle, 2 * np.pi) - np.pi
-    degrees = round(float(np.degrees(angle)), 1)
-    # Half a turn is the same both ways.
-    degrees = 180 if degrees == -180 else degrees
+    degrees = _degrees(angle)
     if reflects and degrees == 180:
         return "mirrored through its middle"
     turn = f"turned by {degrees:g}° about {_direction(axis)}" if degrees else ""
     if not reflects:
         return turn
     return f"{turn} and mirrored along it" if turn else f"mirrored along {_direction(axis)}"
+
+
+def _degrees(angle: float) -> float:
+    """An angle to a tenth of a degree; half a turn is the same both ways."""
+    degrees = round(float(np.degrees(angle)), 1)
+    return 180.0 if degrees == -180 else degrees
 
 
 def _direction(axis: np.ndarray) -> str:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
@@ -26,6 +26,7 @@ def polytope_of(ifs):
     return reaches
 
 
+@settings(max_examples=12)
 @given(SEEDS)
 def test_no_point_of_the_attractor_is_beyond(seed):
     ifs = random_ifs(seed, 3)
@@ -36,6 +37,7 @@ def test_no_point_of_the_attractor_is_beyond(seed):
             assert (points @ VECTORS[k]).max() <= reaches[k] + 1e-9
 
 
+@settings(max_examples=12)
 @given(SEEDS)
 def test_a_corner_lies_as_far_as_anything_can(seed):
     random = np.random.default_rng(seed)
@@ -58,6 +60,7 @@ def test_it_is_close_to_a_thin_attractor():
     assert reaches[MIDDLE - 1] == pytest.approx(center[2] - low[2], abs=0.02)
 
 
+@settings(max_examples=12)
 @given(SEEDS)
 def test_pieces_said_to_be_apart_are(seed):
     ifs = random_ifs(seed, 4, 0.2, 0.6)
