@@ -96,12 +96,12 @@ class IFSMORPH_OT_pair_split(_PairOperator, bpy.types.Operator):
 
     def change(self, settings, listed, locks, active):
         """Put the pairs of the parts where the first pair of the map was."""
-        shape = settings.initial if self.end == "INITIAL" else settings.final
+        shape = shapes_of(settings)[self.end == "FINAL"]
         field = self.end.lower()
         word = getattr(listed[active], field)
         # Where the map is in several pairs, they share the parts.
         sharing = [k for k, pair in enumerate(listed) if getattr(pair, field) == word]
-        words = parts(shape_ifs(shape), word)
+        words = parts(shape, word)
         if len(listed) + max(len(words) - len(sharing), 0) > MOST_PAIRS:
             raise IFSError(f"More than {MOST_PAIRS} pairs would come of it; split other maps.")
         split = [
