@@ -109,8 +109,9 @@ def reversed_pairs(initial: IFS, final: IFS, pairs: Sequence[Pair]) -> tuple[Pai
 
 def _turning(initial: IFS, final: IFS, pairs: Sequence[Pair]) -> np.ndarray:
     """Radians (P,) that the maps of pairs turn by; what may follow them has no bearing on it."""
-    windings = np.array([pair.winding or 0 for pair in pairs])
-    return Morph(*(replace(end, transitions=None) for end in _ends(initial, final, pairs)), winding=windings).turning
+    winding = np.array([pair.winding or 0 for pair in pairs])
+    ends = [replace(end, transitions=None) for end in _ends(*in_one_space(initial, final), pairs)]
+    return morph_between(*ends, winding=winding).turning
 
 
 def shares(words: Sequence[Word]) -> np.ndarray:
