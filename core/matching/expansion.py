@@ -40,6 +40,11 @@ def is_cover(ifs: IFS, words: list[Word]) -> bool:
     return different | prefixes == {()}.union(*(parts(ifs, prefix) for prefix in prefixes)) and not prefixes & different
 
 
+def is_closed(ifs: IFS, words: list[Word]) -> bool:
+    """Whether each word may follow some word, as always in a plain IFS; else the words make up no recurrent IFS."""
+    return bool(ifs.follows[np.ix_([word[-1] for word in words], [word[0] for word in words])].any(axis=0).all())
+
+
 def split_to(ifs: IFS, count: int) -> list[Word]:
     """Words by splitting the largest piece again and again, while no more than `count` come of it."""
     words = [(i,) for i in range(ifs.count)]
@@ -51,9 +56,10 @@ def split_to(ifs: IFS, count: int) -> list[Word]:
         # Sizes that differ by rounding alone are equal, and the first of them goes.
         largest = int(np.argmax(np.array(sizes) > max(sizes) * (1 - 1e-9)))
         split = parts(ifs, words[largest])
-        if len(split) == 1 or len(words) + len(split) - 1 > count:
+        longer = [*words[:largest], *split, *words[largest + 1 :]]
+        if len(split) == 1 or len(longer) > count or not is_closed(ifs, longer):
             return words
-        words[largest : largest + 1] = split
+        words = longer
 
 
 def split_all(ifs: IFS) -> list[Word]:

@@ -13,7 +13,7 @@ from ..affine import compose
 from ..ifs import IFS, IFSError
 from ..morph import Morph
 from ..space.lifting import in_one_space, morph_between
-from .expansion import Word, is_cover, word_map, word_weight
+from .expansion import Word, is_closed, is_cover, word_map, word_weight
 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 """The symmetry that every shape has; it stands for that of space as well."""
@@ -146,6 +146,8 @@ def _end(ifs: IFS, listed: list[tuple[Word, Symmetry | None]], name: str) -> IFS
         raise IFSError(
             f"The pairs do not make up the whole {name} shape; match again, or add the maps that are missing."
         )
+    if not is_closed(ifs, words):
+        raise IFSError(f"The {name} shape is recurrent, and no map leads to some of these pieces; split fewer maps.")
     maps = np.array([word_map(ifs, word) for word in words])
     gauges = np.array([as_map(symmetry, ifs) for _, symmetry in listed])
     weights = np.array([word_weight(ifs, word) for word in words]) * shares(words)

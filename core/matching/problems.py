@@ -9,7 +9,7 @@ import numpy as np
 from ..affine import determinant, singular_values
 from ..morph import SINGULAR
 from .constraints import locks_of
-from .expansion import Word, split_all, split_to, word_map
+from .expansion import Word, is_closed, split_all, split_to, word_map
 from .pairs import Pair
 from .problem import End, Problem
 from .recurrent import problem_of
@@ -40,8 +40,9 @@ def problems(
         if settled[k]:
             continue
         ifs = ends[k].ifs
-        if _has_to_be_split(ends[k], ends[1 - k]) and ifs.count**2 <= MOST_WORDS:
-            options[k].insert(0, split_all(ifs))
+        every = split_all(ifs)
+        if _has_to_be_split(ends[k], ends[1 - k]) and len(every) <= MOST_WORDS and is_closed(ifs, every):
+            options[k].insert(0, every)
         for words in (split_to(ifs, larger), split_to(ifs, 2 * ifs.count - 1)):
             if words not in options[k]:
                 options[k].append(words)

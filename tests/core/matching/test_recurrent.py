@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from core.connectedness import Connectedness, connectedness
 from core.ifs import IFS, IFSError
 from core.matching import Pair, match, morph_of_pairs
-from core.matching.expansion import is_cover, split_all, split_to
+from core.matching.expansion import is_closed, is_cover, split_all, split_to
 from core.matching.problem import End, Problem
 from core.matching.recurrent import RecurrentProblem, problem_of
 from core.matching.scoring import LEVELS, NEVER
@@ -115,6 +115,9 @@ def test_a_split_recurrent_shape_is_the_same_shape(count, seed, most):
     ifs = IFS(np.concatenate([linear, random.uniform(-1, 1, (count, 2, 1))], axis=-1), transitions=allowed / 1.0)
     for words in (split_to(ifs, most), split_all(ifs)):
         assert is_cover(ifs, words)
+        if not is_closed(ifs, words):
+            assert words == split_all(ifs)
+            continue
         split = morph_of_pairs(ifs, ifs, [Pair(word, word) for word in words]).initial
         (points, spacing), (others, other_spacing) = allowed_points(ifs, 3000), allowed_points(split, 3000)
         assert hausdorff(points, others) <= spacing + other_spacing
@@ -126,6 +129,16 @@ def test_words_that_a_shape_forbids_are_no_pieces_of_it():
     with pytest.raises(IFSError, match="pieces"):
         match(NEVER_TWICE, SHAPES["gasket"], frames=12, initial_words=words)
     assert is_cover(NEVER_TWICE, words[1:])
+
+
+def test_a_split_after_which_nothing_leads_to_a_piece_is_said():
+    """Map 1 follows map 0 alone, and no piece ends in 0 once that is split."""
+    ifs = recurrent("gasket", [[0, 0, 1], [1, 0, 0], [1, 1, 1]])
+    words = [(0, 1), (0, 2), (1,), (2,)]
+    assert is_cover(ifs, words)
+    assert not is_closed(ifs, words)
+    with pytest.raises(IFSError, match="split fewer"):
+        morph_of_pairs(ifs, ifs, [Pair(word, word) for word in words])
 
 
 def test_a_symmetry_of_all_is_none_of_what_follows_a_map():
