@@ -59,6 +59,8 @@ class Morph:
         Maps that reflect at one end only and turn over through space: none, but see `space.lifting.LiftedMorph`.
     turning : (N,)
         Radians by which each map turns on the way, counter-clockwise positive; not for the scheme ``elementwise``.
+    shapes : (IFS, IFS)
+        With the attractors of the ends: the ends themselves, or what they were made of by splits and symmetries.
     """
 
     DIMENSION = 2
@@ -111,6 +113,7 @@ class Morph:
         if winding.shape != (initial.count,) or not whole:
             raise IFSError(f"Winding must be {initial.count} whole numbers of turns, one a map.")
         self.initial, self.final, self.part_of = over_one_graph(initial, final)
+        self.shapes = initial, final
         self.scheme, self.winding = scheme, winding.astype(int)[self.part_of]
         return self.winding
 

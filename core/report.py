@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import parallel
-from .connectedness import Connectedness
+from .connectedness import Connectedness, connectedness
 from .deciding import decide_frames
 from .morph import Morph, spread
 
@@ -158,8 +158,15 @@ def check_frames_steps(
         return decide_frames(linear[frames], translation[frames], follows[frames], float(tolerance), True)[:2]
 
     chunks = yield from parallel.steps(check, range(0, len(uv_swell), CHUNK), threads)
-    state = np.concatenate([chunk[0] for chunk in chunks])
-    return FrameCheck(uv_swell, state, np.concatenate([chunk[1] for chunk in chunks]), float(tolerance))
+    state, gap = (np.concatenate([chunk[k] for chunk in chunks]) for k in (0, 1))
+    for end, shape in enumerate(morph.shapes):
+        there = (uv_swell[:, :3] == (end, end, 0)).all(axis=1) & ~uv_swell[:, 3:].any(axis=1)
+        there &= state == Connectedness.UNDECIDED
+        if there.any():
+            # The shape is easier to decide as it was before its maps were split or listed again.
+            verdict = connectedness(shape, tolerance)
+            state[there], gap[there] = verdict.state, verdict.gap
+    return FrameCheck(uv_swell, state, gap, float(tolerance))
 
 
 def family(morph: Morph, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

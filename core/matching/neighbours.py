@@ -6,6 +6,9 @@ import numpy as np
 
 from .problem import Candidate, Problem
 
+MOST_TURNS = 3
+"""Whole turns of a map beyond the shorter way, at most."""
+
 Rows = tuple[np.ndarray, np.ndarray]
 """Rows (2, N) and winding (N,) of a candidate not yet scored."""
 
@@ -36,7 +39,7 @@ def neighbours(problem: Problem, candidate: Candidate) -> list[Rows]:
     for p in range(count):
         if problem.may_wind(p):
             for turn in (-1, 1):
-                if abs(winding[p] + turn) <= 1:
+                if abs(winding[p] + turn) <= MOST_TURNS:
                     wound = winding.copy()
                     wound[p] += turn
                     found.append((rows, wound))

@@ -96,7 +96,9 @@ def morph_of_pairs(
         If a pair names a map that there is not, or a piece of a shape is in no pair.
     """
     winding = np.array([pair.winding or 0 for pair in pairs])
-    return morph_between(*_ends(*in_one_space(initial, final), pairs), scheme, winding, flip)
+    morph = morph_between(*_ends(*in_one_space(initial, final), pairs), scheme, winding, flip)
+    morph.shapes = initial, final
+    return morph
 
 
 def reversed_pairs(initial: IFS, final: IFS, pairs: Sequence[Pair]) -> tuple[Pair, ...]:

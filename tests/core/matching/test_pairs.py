@@ -10,11 +10,13 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from core.cloud import point_cloud
-from core.ifs import IFSError
+from core.connectedness import Connectedness, connectedness
+from core.ifs import IFS, IFSError
 from core.matching import Pair, morph_of_pairs, pairs_from_plain, pairs_to_plain
 from core.matching.expansion import split_to
 from core.matching.pairs import IDENTITY, reversed_pairs
 from core.matching.symmetry import symmetries
+from core.report import check_frames
 from core.shapes import SHAPES
 from core.space.lifting import FLIPS
 from core.space.shapes import SPACE_SHAPES
@@ -141,3 +143,25 @@ def test_a_shape_of_the_plane_is_paired_with_one_in_space():
 def test_a_symmetry_of_other_dimensions_is_said():
     with pytest.raises(IFSError, match="no symmetry"):
         morph_of_pairs(SHAPES["gasket"], SHAPES["gasket"], [Pair((k,), (k,), as_tuple(np.eye(3, 4))) for k in range(3)])
+
+
+def test_an_end_is_decided_as_the_shape_that_it_is():
+    """Listed seven times, the two maps of this shape are too many to decide at once."""
+    shape = IFS(
+        [
+            [
+                [0.34729951837593337, 0.5047519256790244, -0.3690192733216323],
+                [-0.5047519256790244, 0.34729951837593337, -0.18175311820789686],
+            ],
+            [
+                [0.777008606652451, 0.14128919017921174, -0.0528536078415085],
+                [-0.14128919017921174, 0.777008606652451, -0.421311751874185],
+            ],
+        ]
+    )
+    morph = morph_of_pairs(shape, shape, [Pair((k % 2,), (k % 2,)) for k in range(7)])
+    assert connectedness(shape).state == Connectedness.CONNECTED
+    assert connectedness(morph.initial).state == Connectedness.UNDECIDED
+    check = check_frames(morph, [[0, 0, 0], [1, 1, 0], [0, 0, 0.01], [0.5, 0.5, 0]])
+    assert check.state[:2].tolist() == [Connectedness.CONNECTED] * 2
+    assert (check.gap[:2] == connectedness(shape).gap).all()
