@@ -35,6 +35,9 @@ KEEP = 0.04
 THINNEST = 0.02
 """Shapes thinner than this share of their length count as if they were as thick."""
 
+USUAL = 100
+"""Pairs of pieces looked at for a pair of maps, beyond which a shape counts as several in the work."""
+
 CHUNK = 4
 
 CHECKS = 2
@@ -121,7 +124,7 @@ def score(
     swells : (C, S)
         Of each sample; NaN where a candidate was given up before.
     work : int
-        Shapes decided, for a budget that does not depend on the machine.
+        Shapes decided, each counted as often as it was hard, for a budget that does not depend on the machine.
     """
     chunks = range(0, len(rows), CHUNK)
 
@@ -169,7 +172,7 @@ def _score(
     desk, drift, along = empty_desk(maps), np.zeros((maps, 2)), np.zeros(1)
     no, first = np.bool_(False), np.int64(0)
     state, gap, labels = np.empty(1, np.uint8), np.empty((1, 2)), np.empty((1, maps), np.int64)
-    work = 0
+    work, usual = 0, USUAL * maps * (maps - 1) // 2 + 1
     for candidate in range(count):
         for k in range(maps):
             i, j = rows[candidate, 0, k], rows[candidate, 1, k]
@@ -207,8 +210,8 @@ def _score(
             low, high, level = 0, most + 1, 0
             while low < high and level < LEVELS.shape[0]:
                 _linear_parts(start, turn, sign, ends, at, LEVELS[level], linear)
-                work += 1
                 decide_drift(desk, linear, translation, drift, along, tolerance, no, first, state, gap, labels)
+                work += max(1, desk.tree.used[1] // usual)
                 if state[0] == CONNECTED:
                     high = level
                 else:
