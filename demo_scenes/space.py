@@ -72,7 +72,7 @@ def _pictures(owner) -> list[Image.Image]:
     )
     camera = bpy.context.scene.camera
     camera.data.type = "ORTHO"
-    camera.data.ortho_scale = 1.1 * owner.scale.x
+    camera.data.ortho_scale = 1.3 * owner.scale.x
     camera.rotation_euler = math.radians(70), 0.0, math.radians(-25)
     # It looks along its own z axis, from far enough away.
     bpy.context.view_layer.update()
