@@ -1,6 +1,6 @@
 """Has processes of their own compile the kernels when Blender's window opens with them the first time on a computer.
 
-That takes about half a minute, during which a window would freeze. What was compiled is kept in the user's folder of
+That takes about a minute, during which a window would freeze. What was compiled is kept in the user's folder of
 the extension. Until the processes are over, whatever needs kernels waits and says so, but renders; they must not be
 wrong, and Blender compiles for them as it goes. It does the same without a window, and where no process can be had.
 """
@@ -81,7 +81,7 @@ class _Preparation:
             return True
         said = self.close()
         if any(code != 0 for code in codes):
-            print(f"IFS Morph: could not prepare ahead, so its first use will take half a minute.\n{said}")
+            print(f"IFS Morph: could not prepare ahead, so its first use will take a minute.\n{said}")
         else:
             warm_up.mark_done(self.folder)
         return False
@@ -141,7 +141,7 @@ def start(folder: Path, when_over: Callable[[], None]) -> None:
     try:
         _running.append(_Preparation(folder, when_over))
     except OSError as error:
-        print(f"IFS Morph: could not prepare ahead, so its first use will take half a minute: {error}")
+        print(f"IFS Morph: could not prepare ahead, so its first use will take a minute: {error}")
         return
     bpy.app.timers.register(look, first_interval=INTERVAL, persistent=True)
 
