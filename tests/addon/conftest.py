@@ -1,8 +1,7 @@
 """Gives the tests the extension as a user has it: built into a zip, installed by Blender from the zip, enabled.
 
 The ``bpy`` module reads its user folder once, when it is first imported, so this file chooses the folder before
-any test module imports ``bpy``. Sessions that run at the same time have a folder each. Compiled kernels are kept from
-session to session.
+any test module imports ``bpy``. Processes that run at the same time have a folder each.
 """
 
 import fcntl
@@ -41,7 +40,6 @@ def _empty_user_folder() -> Path:
 
 
 os.environ["BLENDER_USER_RESOURCES"] = str(_empty_user_folder())
-os.environ.setdefault("NUMBA_CACHE_DIR", str(OUTPUT / "kernels"))
 
 
 @pytest.fixture(scope="session")
