@@ -102,8 +102,9 @@ def test_a_mirror_symmetry_saves_a_map_from_flipping():
 
 def test_it_is_the_same_again_with_any_number_of_threads():
     first, *others = (
-        match(SHAPES["pentigasket"], SHAPES["Koch curve"], 60, budget=60_000, threads=threads) for threads in (2, 1, 3)
+        match(SHAPES["Koch curve"], SHAPES["gasket"], 24, budget=4000, threads=threads) for threads in (2, 1, 3)
     )
+    assert len(first.path.keys.time) > 2, "a path was planned"
     for again in others:
         assert again.pairs == first.pairs
         assert np.array_equal(again.path.keys.value, first.path.keys.value)
