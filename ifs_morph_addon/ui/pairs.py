@@ -4,6 +4,7 @@ import bpy
 
 from ..conversion import has_pairs, pairs_problem
 from ..pairs import described, line
+from .sidebar import SidebarPanel
 from .text import sentence
 
 
@@ -17,19 +18,11 @@ class IFSMORPH_UL_pairs(bpy.types.UIList):
         row.prop(item, "locked", text="", icon="LOCKED" if item.locked else "UNLOCKED", emboss=False)
 
 
-class IFSMORPH_PT_pairs(bpy.types.Panel):
+class IFSMORPH_PT_pairs(SidebarPanel, bpy.types.Panel):
     """Which map of the initial shape becomes which of the final one."""
 
     bl_label = "Pairs"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "IFS Morph"
     bl_parent_id = "IFSMORPH_PT_main"
-
-    @classmethod
-    def poll(cls, context):
-        """Show for morph objects."""
-        return context.object is not None and context.object.ifs_morph.kind != "NONE"
 
     def draw(self, context):
         """Draw the list, the buttons beside it, and the active pair."""

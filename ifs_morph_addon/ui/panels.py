@@ -8,24 +8,14 @@ from .files import draw_file_buttons
 from .pairs import IFSMORPH_PT_pairs
 from .path import IFSMORPH_PT_offsets, IFSMORPH_PT_path
 from .presets import IFSMORPH_PT_output_presets
+from .sidebar import SidebarPanel
 from .text import sentence
 
 MOST_IN_GRID = 8
 """Maps whose transitions are drawn as a grid."""
 
 
-class _Panel:
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "IFS Morph"
-
-    @classmethod
-    def poll(cls, context):
-        """Sub-panels show for morph objects only."""
-        return context.object is not None and context.object.ifs_morph.kind != "NONE"
-
-
-class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
+class IFSMORPH_PT_main(SidebarPanel, bpy.types.Panel):
     """The active morph, or how to add one."""
 
     bl_label = "IFS Morph"
@@ -77,7 +67,7 @@ class IFSMORPH_PT_main(_Panel, bpy.types.Panel):
             )
 
 
-class IFSMORPH_PT_report(_Panel, bpy.types.Panel):
+class IFSMORPH_PT_report(SidebarPanel, bpy.types.Panel):
     """What was found about the path."""
 
     bl_label = "Report"
@@ -102,7 +92,7 @@ class IFSMORPH_PT_report(_Panel, bpy.types.Panel):
             sentence(box, context, line)
 
 
-class _ShapePanel(_Panel):
+class _ShapePanel(SidebarPanel):
     bl_parent_id = "IFSMORPH_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -177,7 +167,7 @@ class IFSMORPH_PT_final(_ShapePanel, bpy.types.Panel):
     shape = "final"
 
 
-class _TransitionsPanel(_Panel):
+class _TransitionsPanel(SidebarPanel):
     bl_label = "Transitions"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -224,7 +214,7 @@ class IFSMORPH_PT_final_transitions(_TransitionsPanel, bpy.types.Panel):
     shape = "final"
 
 
-class IFSMORPH_PT_edit_maps(_Panel, bpy.types.Panel):
+class IFSMORPH_PT_edit_maps(SidebarPanel, bpy.types.Panel):
     """The maps as triangles in the viewport."""
 
     bl_label = "Edit Maps in Viewport"
@@ -245,7 +235,7 @@ class IFSMORPH_PT_edit_maps(_Panel, bpy.types.Panel):
             sentence(layout, context, text)
 
 
-class IFSMORPH_PT_winding(_Panel, bpy.types.Panel):
+class IFSMORPH_PT_winding(SidebarPanel, bpy.types.Panel):
     """How often the maps turn on the way."""
 
     bl_label = "Winding"
@@ -269,7 +259,7 @@ class IFSMORPH_PT_winding(_Panel, bpy.types.Panel):
             column.prop(item, "winding", text=item.name)
 
 
-class IFSMORPH_PT_locus(_Panel, bpy.types.Panel):
+class IFSMORPH_PT_locus(SidebarPanel, bpy.types.Panel):
     """The connectedness locus."""
 
     bl_label = "Connectedness Locus"
@@ -309,7 +299,7 @@ def draw_locus_state(layout, context) -> None:
     sentence(layout, context, text, icon="INFO")
 
 
-class IFSMORPH_PT_output(_Panel, bpy.types.Panel):
+class IFSMORPH_PT_output(SidebarPanel, bpy.types.Panel):
     """What the attractor becomes."""
 
     bl_label = "Output"
@@ -358,7 +348,7 @@ class IFSMORPH_PT_output(_Panel, bpy.types.Panel):
             layout.prop(output, "color")
 
 
-class IFSMORPH_PT_window(_Panel, bpy.types.Panel):
+class IFSMORPH_PT_window(SidebarPanel, bpy.types.Panel):
     """The part of the plane that the image shows."""
 
     bl_label = "Fit Window"

@@ -3,22 +3,15 @@
 import bpy
 
 from .. import fcurves
+from .sidebar import SidebarPanel
 from .text import sentence
 
 
-class IFSMORPH_PT_path(bpy.types.Panel):
+class IFSMORPH_PT_path(SidebarPanel, bpy.types.Panel):
     """The path through the locus."""
 
     bl_label = "Path"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "IFS Morph"
     bl_parent_id = "IFSMORPH_PT_main"
-
-    @classmethod
-    def poll(cls, context):
-        """Show for morph objects."""
-        return context.object is not None and context.object.ifs_morph.kind != "NONE"
 
     def draw(self, context):
         """Draw the settings and the buttons."""
@@ -38,17 +31,12 @@ class IFSMORPH_PT_path(bpy.types.Panel):
         row.operator("ifs_morph.clear_path", icon="X")
 
 
-class IFSMORPH_PT_offsets(bpy.types.Panel):
+class IFSMORPH_PT_offsets(SidebarPanel, bpy.types.Panel):
     """How far each map is from the path of all."""
 
     bl_label = "Offsets of the Maps"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "IFS Morph"
     bl_parent_id = "IFSMORPH_PT_path"
     bl_options = {"DEFAULT_CLOSED"}
-
-    poll = IFSMORPH_PT_path.poll
 
     def draw(self, context):
         """Draw two numbers a map, which can be keyed."""
