@@ -9,7 +9,6 @@ to the others. A detour from i to k takes the attractorlet of k to a part of tha
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import reduce
 
 import numpy as np
 
@@ -17,6 +16,14 @@ from .affine import compose, transform
 from .ifs import IFS
 
 Word = tuple[int, ...]
+
+
+def word_map(ifs: IFS, word: Word) -> np.ndarray:
+    """The composition (2, 3), or (3, 4), of the maps that a word names, the last one applied first."""
+    composed = ifs.maps[word[0]]
+    for letter in word[1:]:
+        composed = compose(composed, ifs.maps[letter])
+    return composed
 
 
 @dataclass(frozen=True)
@@ -111,10 +118,7 @@ def _detours(
 def _end(ifs: IFS, end: int, parts: list[Part], part_of: np.ndarray) -> IFS:
     """An IFS made of parts (M,) of its maps, with the same attractor and measure."""
     words = [part.words[end] for part in parts]
-    maps = [
-        reduce(compose, ifs.maps[list(word)]) if word else _point(ifs, i)
-        for word, i in zip(words, part_of.tolist(), strict=True)
-    ]
+    maps = [word_map(ifs, word) if word else _point(ifs, i) for word, i in zip(words, part_of.tolist(), strict=True)]
     whole = np.array([len(word) == 1 for word in words])
     given = np.ones((ifs.count, ifs.count)) if ifs.transitions is None else ifs.transitions
     transitions = given[np.ix_(part_of, part_of)]
@@ -129,7 +133,7 @@ def _point(ifs: IFS, i: int) -> np.ndarray:
     word = [i]
     while (following := int(np.argmax(ifs.follows[word[-1]]))) not in word:
         word.append(following)
-    cycle = reduce(compose, ifs.maps[word[word.index(following) :]])
+    cycle = word_map(ifs, word[word.index(following) :])
     point = np.linalg.solve(np.eye(2) - cycle[:, :2], cycle[:, 2])
     # Once more through the cycle it is the same.
-    return np.column_stack([np.zeros((2, 2)), transform(reduce(compose, ifs.maps[word]), point)])
+    return np.column_stack([np.zeros((2, 2)), transform(word_map(ifs, word), point)])

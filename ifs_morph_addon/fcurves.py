@@ -21,10 +21,8 @@ OFFSET_CHANNELS = tuple((f"ifs_morph.offset_{axis}", k) for axis in "uv" for k i
 
 def path_curves(owner, channels=CHANNELS):
     """F-curves of u, v and swell on an object, or of other channels; None for each that it has not."""
-    curves = compat.fcurves(owner)
-    if curves is None:
-        return [None] * len(channels)
-    return [curves.find(data_path, index=index) for data_path, index in channels]
+    found = {(curve.data_path, curve.array_index): curve for curve in compat.fcurves(owner) or ()}
+    return [found.get(channel) for channel in channels]
 
 
 def place_of(settings) -> list[float]:
@@ -43,11 +41,8 @@ def obstacle(owner) -> str | None:
     data = owner.animation_data
     if data is not None and data.action is not None and data.action.library is not None:
         return f"The action “{data.action.name}” is linked from a library; make it local first"
-    if data is not None and any(
-        driver.data_path == data_path and driver.array_index == index
-        for driver in data.drivers
-        for data_path, index in CHANNELS + OFFSET_CHANNELS
-    ):
+    drivers = () if data is None else data.drivers
+    if any((driver.data_path, driver.array_index) in CHANNELS + OFFSET_CHANNELS for driver in drivers):
         return "UV, Swell or an offset has a driver; remove it first"
     if any(curve is not None and curve.lock for curve in path_curves(owner, CHANNELS + OFFSET_CHANNELS)):
         return "The F-curve of UV, Swell or an offset is locked; unlock it first"

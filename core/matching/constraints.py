@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..ifs import IFS, IFSError
-from .expansion import Word, is_cover, parts
+from ..joining import Word
+from .expansion import is_cover, parts
 from .pairs import Pair, Symmetry, as_map
 from .problem import Lock
 

@@ -8,18 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..affine import compose, singular_values
+from ..affine import singular_values
 from ..ifs import IFS
-
-Word = tuple[int, ...]
-
-
-def word_map(ifs: IFS, word: Word) -> np.ndarray:
-    """The composition (2, 3), or (3, 4), of the maps that a word names, the last one applied first."""
-    composed = ifs.maps[word[0]]
-    for letter in word[1:]:
-        composed = compose(composed, ifs.maps[letter])
-    return composed
+from ..joining import Word, word_map
 
 
 def word_weight(ifs: IFS, word: Word) -> float:

@@ -11,13 +11,13 @@ import numpy as np
 from .. import parallel
 from ..connectedness import Connectedness
 from ..ifs import IFS, IFSError
+from ..joining import Word
 from ..morph import Morph, spread
 from ..path import Path, plan_path_steps
 from ..report import check_frames_steps
 from ..space.lifting import in_one_space
 from .account import MatchReport
 from .constraints import settled_words
-from .expansion import Word
 from .pairs import Pair, morph_of_pairs, reversed_pairs
 from .problem import Candidate, End, Problem
 from .problems import problems

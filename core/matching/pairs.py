@@ -11,9 +11,10 @@ import numpy as np
 
 from ..affine import compose
 from ..ifs import IFS, IFSError
+from ..joining import Word, word_map
 from ..morph import Morph
 from ..space.lifting import in_one_space, morph_between
-from .expansion import Word, is_closed, is_cover, word_map, word_weight
+from .expansion import is_closed, is_cover, word_weight
 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 """The symmetry that every shape has; it stands for that of space as well."""

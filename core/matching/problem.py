@@ -9,9 +9,9 @@ import numpy as np
 
 from ..affine import compose, rotation, transform
 from ..ifs import IFS
+from ..joining import Word, word_map
 from . import scoring, space_scoring
 from .assignment import assign
-from .expansion import Word, word_map
 from .pairs import Pair
 from .scoring import MEAN, WORST, golden_samples
 

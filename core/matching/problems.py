@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..affine import determinant, singular_values
+from ..joining import Word, word_map
 from ..morph import SINGULAR
 from .constraints import locks_of
-from .expansion import Word, is_closed, split_all, split_to, word_map
+from .expansion import is_closed, split_all, split_to
 from .pairs import Pair
 from .problem import End, Problem
 from .recurrent import problem_of

@@ -4,7 +4,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from core.ifs import IFS
-from core.matching.expansion import is_cover, split_all, split_to, word_map, word_weight
+from core.joining import word_map
+from core.matching.expansion import is_cover, split_all, split_to, word_weight
 from core.shapes import SHAPES
 from tests.core.reference import at, dense
 
