@@ -142,7 +142,7 @@ def plan_path_steps(
         raise ValueError(f"A path over {frames} frames cannot be keyed; it needs 2 or more.")
     morph.initial.require_attractor()
     morph.final.require_attractor()
-    keys = _straight_keys(np.array([[0.0, 0.0], [1.0, 1.0]]), frames)
+    line = keys = _straight_keys(np.array([[0.0, 0.0], [1.0, 1.0]]), frames)
     offset_keys, reason = None, ""
     if method == "planned":
         if locus is None:
@@ -174,12 +174,12 @@ def plan_path_steps(
             _swell_steps(morph, keys, offset_keys, frames, tolerance, threads), 0.7, 0.9
         )
     times = np.arange(frames) / (frames - 1)
-    checked = yield from parallel.part(
-        check_frames_steps(morph, _sample(keys, swell_keys, offset_keys, times), tolerance, threads), 0.9, 0.95
-    )
-    straight = yield from parallel.part(
-        check_frames_steps(morph, np.stack([times, times, 0 * times], axis=1), tolerance, threads), 0.95, 1.0
-    )
+    places, diagonal = _sample(keys, swell_keys, offset_keys, times), _sample(line, _no_swell(), None, times)
+    elsewhere = not np.array_equal(places, diagonal)
+    end = 0.95 if elsewhere else 1.0
+    checked = straight = yield from parallel.part(check_frames_steps(morph, diagonal, tolerance, threads), 0.9, end)
+    if elsewhere:
+        checked = yield from parallel.part(check_frames_steps(morph, places, tolerance, threads), 0.95, 1.0)
     report = PathReport(checked, straight, method, reason, morph.flips, morph.turned_over)
     return Path(keys, swell_keys, offset_keys, report)
 

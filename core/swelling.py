@@ -17,8 +17,9 @@ LEVELS = 64
 """Swell is tried at 0, 1/64, 2/64 ... 1, and the first that works is the least: more may be worse, for connectedness
 is not monotone in swell."""
 
-STRIDE = {2: 1, 3: 4}
-"""By how many of these at a time it is looked for the first, by dimensions: in space a look takes longer."""
+STRIDE, LONG_STRIDE = 1, 8
+"""By how many of these at a time it is looked for the first; the latter where a look takes long, which is in space and
+for recurrent shapes."""
 
 NEVER = 2.0
 """Least swell where no swell up to 1 is known to work."""
@@ -51,11 +52,15 @@ def _least(morph: Morph, place: np.ndarray, start: float, tolerance: float) -> f
     def holds(k: int) -> bool:
         return bool(are_connected(linear[k : k + 1], translation[k : k + 1], follows[k : k + 1], tolerance)[0])
 
-    stride = STRIDE[morph.DIMENSION]
-    for last in sorted({*range(0, len(swells), stride), len(swells) - 1}):
-        if holds(last):
-            # Back over what was passed by.
-            return float(next(swells[k] for k in range(max(0, last - stride + 1), last + 1) if k == last or holds(k)))
+    stride = LONG_STRIDE if morph.DIMENSION == 3 or morph.is_recurrent else STRIDE
+    for found in sorted({*range(0, len(swells), stride), len(swells) - 1}):
+        if holds(found):
+            # Back over what was passed by, by halves.
+            low, high = max(-1, found - stride), found
+            while high - low > 1:
+                middle = (low + high) // 2
+                low, high = (low, middle) if holds(middle) else (middle, high)
+            return float(swells[high])
     return NEVER
 
 

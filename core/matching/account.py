@@ -18,11 +18,11 @@ class MatchReport:
     ----------
     path : PathReport
         Of the matched morph; its `straight` is the straight line through it without swell.
-    element_wise, straight_polar : FrameCheck
-        Map k to map k, the shorter list again from its first, straight and without swell: entry by entry, and by polar
-        decomposition.
-    straight_swell : (float, float)
-        Greatest and mean swell that would mend the latter.
+    straight_polar, element_wise : FrameCheck
+        Map k to map k, the shorter list again from its first, straight and without swell: by polar decomposition, and
+        entry by entry. A first answer does not wait for the latter; it is None there.
+    straight_swell : (float, float) or None
+        Greatest and mean swell that would mend the former; None in a first answer as well.
     pairs : tuple of Pair
     counts : (int, int)
         Maps of the two shapes as given.
@@ -33,9 +33,9 @@ class MatchReport:
     """
 
     path: PathReport
-    element_wise: FrameCheck
     straight_polar: FrameCheck
-    straight_swell: tuple[float, float]
+    element_wise: FrameCheck | None
+    straight_swell: tuple[float, float] | None
     pairs: tuple[Pair, ...]
     counts: tuple[int, int]
     parts: int
@@ -78,13 +78,15 @@ class MatchReport:
             worst = self.worst_gap / self.path.path.tolerance
             lines.append(f"The widest gap is {worst:.1f} times what counts as none.")
         for name, check in (("element by element", self.element_wise), ("by polar decomposition", self.straight_polar)):
+            if check is None:
+                continue
             broken = len(check.state) - check.count(Connectedness.CONNECTED)
             lines.append(
                 f"Map by map in the order given, straight, {name}: {broken} of {len(check.state)} frames not in one "
                 f"piece, the widest gap {100 * check.worst_gap:.1f}% of the shape's size."
             )
-        most, mean = self.straight_swell
-        if most > 0:
+        if self.straight_swell is not None and self.straight_swell[0] > 0:
+            most, mean = self.straight_swell
             lines.append(f"To mend the latter takes swell: {most:.2f} at most, {mean:.3f} on average.")
         lines.append(self._certainty())
         return "\n".join(lines)

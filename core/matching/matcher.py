@@ -12,12 +12,13 @@ from .. import parallel
 from ..connectedness import Connectedness
 from ..ifs import IFS, IFSError
 from ..joining import Word
+from ..locus import compute_locus_steps
 from ..morph import Morph, spread
 from ..path import Path, plan_path_steps
 from ..report import check_frames_steps
 from ..space.lifting import in_one_space
 from .account import MatchReport
-from .constraints import settled_words
+from .constraints import locks_of, settled_words
 from .pairs import Pair, morph_of_pairs, reversed_pairs
 from .problem import Candidate, End, Problem
 from .problems import problems
@@ -46,6 +47,12 @@ PLANNED_MAPS = 9
 
 RECURRENT_MAPS = 2
 """Maps that one of a recurrent morph counts for in that, for they take longer to decide."""
+
+LOCUS_RESOLUTION = {2: 130, 3: 31}
+"""Nodes along u of the locus that paths are planned on, by dimensions; what is planned is tested far more densely."""
+
+WORTH = 0.05
+"""What another plan must be able to save, once nothing swells any more."""
 
 LENGTH_SAMPLES = 241
 """Times between which paths are measured as if straight."""
@@ -167,63 +174,63 @@ def match_steps(
         settled_words(initial, "initial", initial_words, [pair.initial for pair in locked]),
         settled_words(final, "final", final_words, [pair.final for pair in locked]),
     )
-    free = not locked and settled == (None, None)
-
-    naive = tuple(Pair((k % initial.count,), (k % final.count,)) for k in range(max(initial.count, final.count)))
-    naive_morph = morph_of_pairs(initial, final, naive, flip=flip)
-    straight = yield from parallel.part(
-        plan_path_steps(naive_morph, None, frames, tolerance, "straight", threads), 0.0, 0.05
-    )
-    times = np.arange(frames) / (frames - 1)
-    line = np.column_stack([times, times, np.zeros(frames)])
-    element_wise = yield from parallel.part(
-        check_frames_steps(morph_of_pairs(initial, final, naive, "elementwise"), line, tolerance, threads), 0.05, 0.08
-    )
-
-    def as_match(pairs: tuple[Pair, ...], morph: Morph, path: Path, other: float, work: int) -> Match:
-        report = MatchReport(
-            path.report,
-            element_wise,
-            straight.report.straight,
-            (straight.report.path.most_swell, straight.report.path.mean_swell),
-            pairs,
-            (initial.count, final.count),
-            morph.count - len(pairs),
-            work,
-        )
-        return Match(morph, path, report, pairs, path_cost(path) + other)
-
     ends = [
         End(ifs, symmetries(ifs), words or [(i,) for i in range(ifs.count)])
         for ifs, words in zip((initial, final), settled, strict=True)
     ]
+    naive = tuple(Pair((k % initial.count,), (k % final.count,)) for k in range(max(initial.count, final.count)))
+    naive_morph = morph_of_pairs(initial, final, naive, flip=flip)
+    unswollen = yield from parallel.part(
+        plan_path_steps(naive_morph, None, frames, tolerance, "straight unswollen", threads), 0.0, 0.02
+    )
+    polar, straight, element_wise = unswollen.report.path, None, None
+    free = not locked and settled == (None, None)
     best = None
-    if free and scheme in (None, DEFAULT_SCHEMES[0]):
-        given = problem_of(*ends, tolerance, (), threads)
-        start = given.evaluate(given.starts()[:1])[0]
-        best = as_match(naive, naive_morph, straight, start.cost_beside_swell, 0)
-        if found is not None:
-            found(best)
-    yield 0.1
+
+    def swell_of(path: Path | None) -> tuple[float, float] | None:
+        return None if path is None else (path.report.path.most_swell, path.report.path.mean_swell)
+
+    def offer(pairs: tuple[Pair, ...], morph: Morph, path: Path, cost_beside: float, work: int = 0) -> None:
+        """Take what was found if it is the best yet, and tell of it."""
+        nonlocal best
+        parts = morph.count - len(pairs)
+        counts = initial.count, final.count
+        report = MatchReport(path.report, polar, element_wise, swell_of(straight), pairs, counts, parts, work)
+        new = Match(morph, path, report, pairs, path_cost(path) + cost_beside)
+        if best is None or (_no_worse(new, straight if free else None) and _before(new, best)):
+            best = new
+            if found is not None:
+                found(best)
+
+    # The simplest that the user's choices allow, so that there is something at once.
+    given = problem_of(*ends, tolerance, locks_of(locked, ends), threads)
+    first, path = naive_morph, unswollen
+    pairs, beside = given.first()
+    if not free or scheme not in (None, DEFAULT_SCHEMES[0]):
+        first = morph_of_pairs(initial, final, pairs, scheme or DEFAULT_SCHEMES[0], flip)
+        path = yield from parallel.part(
+            plan_path_steps(first, None, frames, tolerance, "straight unswollen", threads), 0.02, 0.04
+        )
+    offer(pairs, first, path, beside)
+    straight = unswollen
+    plain_morph = morph_of_pairs(initial, final, naive, "elementwise")
+    checking = check_frames_steps(plain_morph, polar.uv_swell, tolerance, threads)
+    element_wise = yield from parallel.part(checking, 0.04, 0.06)
+    if polar.count(Connectedness.CONNECTED) < frames:
+        straight = yield from parallel.part(
+            plan_path_steps(naive_morph, None, frames, tolerance, "straight", threads), 0.06, 0.1
+        )
+        if first is naive_morph:
+            offer(pairs, first, straight, beside)
 
     # The same search both ways, so that a morph and its reverse are made of the same pairs.
     backwards = free and _order(final) < _order(initial)
     fixed = [words is not None for words in settled]
     searches = problems(ends[::-1] if backwards else ends, fixed, locked, tolerance, threads)
-    tops: list[tuple[float, int, Candidate]] = []
-    for k, problem in enumerate(searches):
-        start, share = 0.1 + 0.6 * k / len(searches), 0.6 / len(searches)
-        # Half of what is left, and the last one all of it: the first is the simplest, and most often enough.
-        left = budget - sum(other.work for other in searches)
-        verifying = _verified_steps(problem, frames, left if problem is searches[-1] else left // 2)
-        verified = yield from parallel.part(verifying, start, start + share)
-        tops += [(cost, k, candidate) for cost, candidate in verified]
-        if verified[0][0] < GOOD and verified[0][1].spotless:
-            break
-    tops.sort(key=lambda each: each[:2])
+    tops = yield from parallel.part(_searched_steps(searches, frames, budget), 0.1, 0.7)
     work = sum(problem.work for problem in searches)
     # No path stays connected that begins or ends in pieces.
-    whole = (straight.report.path.state[[0, -1]] == Connectedness.CONNECTED).all()
+    whole = (polar.state[[0, -1]] == Connectedness.CONNECTED).all()
     schemes = DEFAULT_SCHEMES if scheme is None else (scheme,)
     plans = [
         (top, method, each)
@@ -231,12 +238,12 @@ def match_steps(
         for each in schemes
         for top in tops[: PLANNED if each == schemes[0] else 1]
     ]
-    for rank, ((_, k, candidate), method, chosen) in enumerate(plans):
-        spotless = best is not None and best.report.spotless
+    for rank, ((problem, candidate), method, chosen) in enumerate(plans):
         # What costs this much beside swell cannot be the best.
-        if spotless and (method == "per map" or candidate.cost_beside_swell >= best.cost):
+        dearest = candidate.cost_beside_swell + (0.0 if method == "straight" else WORTH)
+        if best.report.spotless and dearest >= best.cost:
             continue
-        pairs = searches[k].pairs(candidate)
+        pairs = problem.pairs(candidate)
         if backwards:
             pairs = reversed_pairs(final, initial, pairs)
         try:
@@ -251,16 +258,43 @@ def match_steps(
         passed_by = morph.DIMENSION == 3 and (method == "per map" or chosen != schemes[0])
         if passed_by or (method != "straight" and not plannable):
             continue
-        planning = plan_path_steps(morph, None, frames, tolerance, method, threads)
         at = 0.7 + 0.3 * rank / len(plans)
+        planning = _planned_steps(morph, frames, tolerance, method, threads)
         path = yield from parallel.part(planning, at, at + 0.3 / len(plans))
-        new = as_match(pairs, morph, path, candidate.cost_beside_swell, work)
-        if best is None or (_no_worse(new, straight if free else None) and _before(new, best)):
-            best = new
-            if found is not None:
-                found(best)
-        yield at + 0.3 / len(plans)
+        offer(pairs, morph, path, candidate.cost_beside_swell, work)
+    if best.report.element_wise is None:
+        # The first answer, which nothing could better.
+        best = replace(best, report=replace(best.report, element_wise=element_wise, straight_swell=swell_of(straight)))
     return best
+
+
+def _searched_steps(
+    searches: Sequence[Problem], frames: int, budget: int
+) -> Generator[float, None, list[tuple[Problem, Candidate]]]:
+    """Search one problem after the other until something good is found; what was found, the best first."""
+    tops: list[tuple[float, int, Candidate]] = []
+    for k, problem in enumerate(searches):
+        # Half of what is left, and the last one all of it: the first is the simplest, and most often enough.
+        left = budget - sum(other.work for other in searches)
+        verifying = _verified_steps(problem, frames, left if problem is searches[-1] else left // 2)
+        verified = yield from parallel.part(verifying, k / len(searches), (k + 1) / len(searches))
+        tops += [(cost, k, candidate) for cost, candidate in verified]
+        if verified[0][0] < GOOD and verified[0][1].spotless:
+            break
+    tops.sort(key=lambda each: each[:2])
+    return [(searches[k], candidate) for _, k, candidate in tops]
+
+
+def _planned_steps(
+    morph: Morph, frames: int, tolerance: float, method: str, threads: int | None
+) -> Generator[float, None, Path]:
+    """A path, planned on a coarser locus than otherwise."""
+    locus, begun = None, 0.0
+    if method == "planned":
+        resolution, begun = LOCUS_RESOLUTION[morph.DIMENSION], 0.4
+        computing = compute_locus_steps(morph, resolution, tolerance, threads=threads, gap=False)
+        locus = yield from parallel.part(computing, 0.0, begun)
+    return (yield from parallel.part(plan_path_steps(morph, locus, frames, tolerance, method, threads), begun, 1.0))
 
 
 def _order(ifs: IFS) -> tuple:

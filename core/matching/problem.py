@@ -178,6 +178,12 @@ class Problem:
         )
         return scores, swells, work * count * (count - 1) // 2
 
+    def _beside(self, rows: np.ndarray, winding: np.ndarray) -> np.ndarray:
+        """What candidates (C,) cost beside swell."""
+        return self.scoring.score(*self.tables, rows, winding, np.empty(0), self.tolerance, np.inf, 0.0, self.threads)[
+            0
+        ]
+
     def pairs(self, candidate: Candidate) -> tuple[Pair, ...]:
         """A candidate as pairs of words and symmetries."""
         return self.pairs_of(candidate.rows, candidate.winding)
@@ -201,6 +207,11 @@ class Problem:
         found = [self._complete(given[0], final) for final in (given[1], *turned)]
         different = {tuple(rows.ravel()): (rows, winding) for rows, winding in found}
         return list(different.values())
+
+    def first(self) -> tuple[tuple[Pair, ...], float]:
+        """The pairs of the first start, and what they cost beside swell."""
+        rows, winding = self.starts()[0]
+        return self.pairs_of(rows, winding), float(self._beside(rows[None], winding[None])[0])
 
     def shuffled(self, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
         """Rows and winding in an order of chance, through symmetries of chance."""

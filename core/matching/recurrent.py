@@ -14,7 +14,7 @@ from ..morph import Morph
 from ..report import family
 from .pairs import morph_of_pairs
 from .problem import End, Lock, Problem
-from .scoring import LEVELS, MEAN, NEVER, WORST, score
+from .scoring import LEVELS, MEAN, NEVER, WORST
 
 EFFORT = 6
 """Work that one pair of maps counts for, beside that of plain shapes."""
@@ -26,8 +26,7 @@ class RecurrentProblem(Problem):
     def _score(
         self, rows: np.ndarray, winding: np.ndarray, samples: np.ndarray, bound: float, extra: float
     ) -> tuple[np.ndarray, np.ndarray, int]:
-        none = np.empty(0)
-        beside, _, _ = score(*self.tables, rows, winding, none, self.tolerance, np.inf, extra, self.threads)
+        beside = self._beside(rows, winding) + extra
 
         def of_candidate(k: int) -> tuple[float, np.ndarray, int]:
             pairs = self.pairs_of(rows[k], winding[k])

@@ -77,7 +77,7 @@ def _score(
     swells = np.full((count, len(samples)), np.nan)
     work = 0
     # One time after the other, where that can spare the rest.
-    step = 1 if np.isfinite(bound) else len(samples)
+    step = 1 if np.isfinite(bound) else max(1, len(samples))
     for first in range(0, len(samples), step):
         times = slice(first, first + step)
         # The most swell that keeps the score within the bound.

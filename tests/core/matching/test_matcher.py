@@ -188,10 +188,32 @@ def test_what_cannot_be_kept_is_said(constraint, message):
 def test_the_best_so_far_is_shown_and_never_gets_worse():
     shown = []
     last = match(SHAPES["hexagasket"], SHAPES["Koch curve"], frames=60, found=shown.append)
-    costs = [each.cost for each in shown]
+    costs = [(each.report.disconnected, each.cost) for each in shown]
     assert costs == sorted(costs, reverse=True)
     assert shown[-1] is last
     assert len(shown) > 1
+
+
+@pytest.mark.parametrize("locked", [(), (Pair((1,), (0,)),)])
+def test_the_first_answer_is_what_was_given_and_waits_for_nothing(locked):
+    shown = []
+    last = match(SHAPES["terdragon"], SHAPES["gasket"], frames=24, locked=locked, budget=1000, found=shown.append)
+    first = shown[0]
+    assert (first.report.element_wise, first.report.straight_swell) == (None, None)
+    assert first.path.report.method == "straight unswollen"
+    assert first.pairs[: len(locked)] == locked
+    assert len(first.report.text().splitlines()) < len(last.report.text().splitlines())
+    assert last.report.element_wise is not None
+    assert last.report.straight_swell is not None
+
+
+def test_a_shape_becomes_itself_without_ado():
+    shown = []
+    found = match(SHAPES["gasket"], SHAPES["gasket"], frames=24, found=shown.append)
+    assert len(shown) == 1
+    assert found.report.element_wise is not None
+    assert found.report.straight_swell == (0, 0)
+    assert found.report.spotless
 
 
 def test_it_can_be_stopped():
