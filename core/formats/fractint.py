@@ -163,8 +163,9 @@ def _number(word: str, block: _Block, line: int) -> float:
 def _columns(rows: list[list[float]], size: int) -> int | None:
     """How many numbers make up a map: `size`, or one more where there are probabilities; None if that does not tell.
 
-    The count of all numbers decides where it can. Where it fits both ways, probabilities that sum to one decide, then
-    the lines, then probabilities that nearly sum to one.
+    The count of all numbers decides where it can, unless each line is a map, some with a probability and some without.
+    Where it fits both ways, probabilities that sum to one decide, then the lines, then probabilities that nearly sum to
+    one.
     """
     numbers = np.concatenate(rows)
     counts = {len(row) for row in rows}
@@ -177,6 +178,8 @@ def _columns(rows: list[list[float]], size: int) -> int | None:
 
     if size == 6 and counts == {13} and not sums_to_one(7, 1e-6):
         return 13
+    if counts == {size, size + 1} and not sums_to_one(size + 1, 1e-6):
+        return None
     fits = [columns for columns in (size + 1, size) if len(numbers) % columns == 0]
     if len(fits) < 2:
         return fits[0] if fits else None

@@ -87,6 +87,30 @@ def test_probabilities_may_be_missing_in_some_lines():
     assert "not every map has a probability" in found.problems[0]
 
 
+@pytest.mark.parametrize(
+    ("dimension", "count", "with_probability"), [(2, 7, range(6)), (2, 8, [3]), (3, 13, range(12)), (3, 14, [0])]
+)
+def test_lines_tell_where_the_count_of_numbers_misleads(dimension, count, with_probability):
+    """Six probabilities among seven maps make up 48 numbers, which would be eight maps without."""
+    maps = np.random.default_rng(count).uniform(-0.5, 0.5, (count, dimension * (dimension + 1))).round(3)
+    lines = [" ".join(map(str, row)) + " 0.1" * (k in with_probability) for k, row in enumerate(maps)]
+    found = read_text("\n".join([f"a {'(3D) ' * (dimension == 3)}{{", *lines, "}"]))
+    (entry,) = found.entries
+    assert (entry.count, entry.weights) == (count, None)
+    np.testing.assert_array_equal(entry.maps[..., -1], maps[:, -dimension:])
+    assert "not every map has a probability" in found.problems[0]
+
+
+def test_probabilities_that_sum_to_one_tell_before_the_lines():
+    """A program may break its lines wherever there is no room left."""
+    table = np.random.default_rng(3).uniform(-0.5, 0.5, (7, 7)).round(3)
+    table[:, 6] = [0.1, 0.1, 0.2, 0.2, 0.1, 0.2, 0.1]
+    words = list(map(str, table.ravel()))
+    lines = [" ".join(words[k : k + 6]) for k in range(0, 42, 6)]
+    entry = only("a {\n" + "\n".join([*lines, " ".join(words[42:])]) + "\n}")
+    np.testing.assert_array_equal(entry.weights, table[:, 6])
+
+
 @pytest.mark.parametrize(("columns", "count"), [(6, 7), (7, 6), (6, 14), (7, 12)])
 def test_lines_tell_where_the_count_of_numbers_does_not(columns, count):
     """42 numbers are six maps with probabilities or seven without."""
