@@ -12,7 +12,7 @@ import re
 import numpy as np
 
 from ..affine import compose
-from .entry import LARGEST_NUMBER, NUMBER, FormatError, number
+from .entry import LARGEST_NUMBER, FormatError, number
 from .markup import Tag
 
 LINEAR = {"linear", "linear3D"}
@@ -28,6 +28,9 @@ OTHER = re.compile(
     r"|(xy)?(Coefs|Post)\w+"
 )
 """Attributes that are no variations."""
+
+NEARLY_NUMBER = re.compile(r"(?=.*\d)[\d.,eE+-]+|[+-]?(inf|infinity|nan)", re.IGNORECASE)
+"""What other programs take for some number, such as the part before a comma; attributes with words are no weights."""
 
 IDENTITY = np.eye(2, 3)
 
@@ -54,15 +57,18 @@ class Xform:
         """Numbers of an attribute; raises FormatError."""
         if name not in self.values:
             return default
-        try:
-            return [number(word) for word in self.values[name].replace(",", " ").split()]
-        except FormatError as error:
-            raise FormatError(f"{self.called}: in {name}, {error}") from None
+        return [self._number(name, word) for word in self.values[name].replace(",", " ").split()]
 
     def number(self, name: str, default: float) -> float:
-        """The first number of an attribute; raises FormatError."""
-        numbers = self.numbers(name, [default])
-        return numbers[0] if numbers else default
+        """The first number of an attribute, where a comma may be meant for a point; raises FormatError."""
+        words = self.values.get(name, "").split()
+        return self._number(name, words[0]) if words else default
+
+    def _number(self, name: str, word: str) -> float:
+        try:
+            return number(word)
+        except FormatError as error:
+            raise FormatError(f"{self.called}: in {name}, {error}") from None
 
     def affine(self, name: str) -> np.ndarray:
         """Affine part (2, 3) that the attribute `coefs` or `post` holds column by column; raises FormatError."""
@@ -130,9 +136,12 @@ class Xform:
             kind = int(self.number("var1", 0))
             yield f"variation {kind}" if kind else "linear", 1.0
         for name, value in self.pairs:
-            if OTHER.fullmatch(name) or DEPTH.fullmatch(name) or not NUMBER.fullmatch(value.strip()):
+            if OTHER.fullmatch(name) or DEPTH.fullmatch(name):
                 continue
-            weight = self.number(name, 0.0)
+            known = name in LINEAR or name in BEFORE_OR_AFTER
+            if not known and not NEARLY_NUMBER.fullmatch(value.strip()):
+                continue
+            weight = self._number(name, value.strip())
             if name.endswith("_fx_priority"):
                 if name.removesuffix("_fx_priority") in LINEAR and weight:
                     yield f"{name.removesuffix('_fx_priority')} ahead of or after the others", weight
