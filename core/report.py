@@ -29,12 +29,15 @@ class FrameCheck:
     gap : (F, 2)
         Brackets relative to the enclosing diameter; NaN without an attractor.
     tolerance : float
+    widest : float
+        Length of the widest gap of a disconnected frame, in units of the plane; 0 if there is none.
     """
 
     uv_swell: np.ndarray
     state: np.ndarray
     gap: np.ndarray
     tolerance: float
+    widest: float = 0.0
 
     def count(self, state: Connectedness) -> int:
         """Frames that have this state."""
@@ -62,9 +65,14 @@ class FrameCheck:
         """The mean swell over the frames."""
         return float(self.uv_swell[:, 2].mean())
 
-    def text(self) -> str:
-        """What was found, in a plain sentence or two, a line each."""
-        return "\n".join([_sentence("The keyed path", self), *_swell_sentences(self)])
+    def gap_text(self, pixel: float | None = None) -> str:
+        """The widest gap in words, also in pixels of a picture if the length of one in the plane is given."""
+        words = f"the widest gap {100 * self.worst_gap:.1f}% of the shape's size"
+        return words if pixel is None else f"{words} or {self.widest / pixel:.1f} pixels"
+
+    def text(self, pixel: float | None = None) -> str:
+        """What was found, in a plain sentence or two, a line each; `pixel` as for `gap_text`."""
+        return "\n".join([_sentence("The keyed path", self, pixel), *_swell_sentences(self)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,15 +100,15 @@ class PathReport:
     flips: tuple[int, ...]
     turned_over: tuple[int, ...] = ()
 
-    def text(self) -> str:
-        """The report in a few plain sentences, a line each."""
-        lines = [_sentence("The path", self.path)]
+    def text(self, pixel: float | None = None) -> str:
+        """The report in a few plain sentences, a line each; `pixel` as for `FrameCheck.gap_text`."""
+        lines = [_sentence("The path", self.path, pixel)]
         if self.reason:
             lines.append(self.reason)
         lines += self._failures()
         lines += _swell_sentences(self.path)
         if self.method != "straight unswollen":
-            lines.append(_sentence("The straight line without swell", self.straight))
+            lines.append(_sentence("The straight line without swell", self.straight, pixel))
         for done, flipped in (("Flattened half-way", self.flips), ("Turned over through space", self.turned_over)):
             if flipped:
                 maps = ", ".join(str(i + 1) for i in flipped)
@@ -166,7 +174,17 @@ def check_frames_steps(
             # The shape is easier to decide as it was before its maps were split or listed again.
             verdict = connectedness(shape, tolerance)
             state[there], gap[there] = verdict.state, verdict.gap
-    return FrameCheck(uv_swell, state, gap, float(tolerance))
+    return FrameCheck(uv_swell, state, gap, float(tolerance), _widest(morph, uv_swell, state, gap))
+
+
+def _widest(morph: Morph, uv_swell: np.ndarray, state: np.ndarray, gap: np.ndarray) -> float:
+    """Length of the widest gap, as a share of its shape the widest as well."""
+    gaps = np.where(state == Connectedness.DISCONNECTED, gap.mean(axis=1), 0.0)
+    frame = int(np.argmax(gaps))
+    if gaps[frame] == 0:
+        return 0.0
+    _, radius = morph.at(*spread(uv_swell[frame], morph.count)).enclosing_disc
+    return float(gaps[frame] * 2 * radius)
 
 
 def family(morph: Morph, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -179,14 +197,13 @@ def family(morph: Morph, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
     return linear, np.ascontiguousarray(morph.translation(v)), morph.follows_at(places[:, 0])
 
 
-def _sentence(subject: str, check: FrameCheck) -> str:
+def _sentence(subject: str, check: FrameCheck, pixel: float | None) -> str:
     frames = len(check.state)
     pixels = round(1 / check.tolerance)
     broken = check.count(Connectedness.DISCONNECTED)
     parts = []
     if broken:
-        gap = f"the widest gap {100 * check.worst_gap:.1f}% of the shape's size"
-        parts.append(f"{broken} in pieces ({100 * broken / frames:.0f}%, {gap})")
+        parts.append(f"{broken} in pieces ({100 * broken / frames:.0f}%, {check.gap_text(pixel)})")
     if check.count(Connectedness.UNDECIDED):
         parts.append(f"{check.count(Connectedness.UNDECIDED)} undecided")
     if check.count(Connectedness.NO_ATTRACTOR):

@@ -222,6 +222,14 @@ def tolerance(settings) -> float:
     return 1 / settings.gap_resolution
 
 
+def pixel(settings) -> float | None:
+    """Length in the plane of the side of a pixel of an object's image; None if it has none."""
+    if settings.kind != "IMAGE":
+        return None
+    left, _, right, _ = settings.output.window
+    return max(right - left, 1e-12) / settings.output.resolution[0]
+
+
 def fingerprint(settings, *more) -> str:
     """Short text that changes with the morph, the tolerance and `more`; tells whether a result is out of date."""
     digest = hashlib.sha1(usedforsecurity=False)

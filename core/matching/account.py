@@ -23,6 +23,8 @@ class MatchReport:
         entry by entry. A first answer does not wait for the latter; it is None there.
     straight_swell : (float, float) or None
         Greatest and mean swell that would mend the former; None in a first answer as well.
+    naive_flips : int
+        Maps of both that reflect at one end only.
     pairs : tuple of Pair
     counts : (int, int)
         Maps of the two shapes as given.
@@ -36,6 +38,7 @@ class MatchReport:
     straight_polar: FrameCheck
     element_wise: FrameCheck | None
     straight_swell: tuple[float, float] | None
+    naive_flips: int
     pairs: tuple[Pair, ...]
     counts: tuple[int, int]
     parts: int
@@ -71,19 +74,20 @@ class MatchReport:
         """Pairs whose map reflects at one end only, whether it is flattened or turns over."""
         return self.path.flips + self.path.turned_over
 
-    def text(self) -> str:
-        """The report in a few plain sentences, a line each."""
-        lines = [self._pairing(), *self.path.text().split("\n")]
+    def text(self, pixel: float | None = None) -> str:
+        """The report in a few plain sentences, a line each; `pixel` as for `FrameCheck.gap_text`."""
+        lines = [self._pairing(), *self.path.text(pixel).split("\n")]
         if self.disconnected:
             worst = self.worst_gap / self.path.path.tolerance
             lines.append(f"The widest gap is {worst:.1f} times what counts as none.")
+        flips = f", {self.naive_flips} map{'s' * (self.naive_flips > 1)} flipped" if self.naive_flips else ""
         for name, check in (("element by element", self.element_wise), ("by polar decomposition", self.straight_polar)):
             if check is None:
                 continue
             broken = len(check.state) - check.count(Connectedness.CONNECTED)
             lines.append(
                 f"Map by map in the order given, straight, {name}: {broken} of {len(check.state)} frames not in one "
-                f"piece, the widest gap {100 * check.worst_gap:.1f}% of the shape's size."
+                f"piece, {check.gap_text(pixel)}{flips}."
             )
         if self.straight_swell is not None and self.straight_swell[0] > 0:
             most, mean = self.straight_swell

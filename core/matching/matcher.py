@@ -193,9 +193,17 @@ def match_steps(
     def offer(pairs: tuple[Pair, ...], morph: Morph, path: Path, cost_beside: float, work: int = 0) -> None:
         """Take what was found if it is the best yet, and tell of it."""
         nonlocal best
-        parts = morph.count - len(pairs)
-        counts = initial.count, final.count
-        report = MatchReport(path.report, polar, element_wise, swell_of(straight), pairs, counts, parts, work)
+        report = MatchReport(
+            path.report,
+            polar,
+            element_wise,
+            swell_of(straight),
+            len(naive_morph.flips + naive_morph.turned_over),
+            pairs,
+            (initial.count, final.count),
+            morph.count - len(pairs),
+            work,
+        )
         new = Match(morph, path, report, pairs, path_cost(path) + cost_beside)
         if best is None or (_no_worse(new, straight if free else None) and _before(new, best)):
             best = new

@@ -34,7 +34,7 @@ def neighbours(problem: Problem, candidate: Candidate) -> list[Rows]:
                 others = words[p] * size + np.arange(size)
                 found += [(_with(rows, end, [p], row), winding) for row in others if row != rows[end, p]]
             if p >= locked and counts[words[p]] > 1:
-                others = [word for word in range(len(counts)) if word != words[p]]
+                others = [word for word in problem.open_words(end) if word != words[p]]
                 found += [(_with(rows, end, [p], word * size), winding) for word in others]
     for p in range(count):
         if problem.may_wind(p):
@@ -51,12 +51,12 @@ def neighbours(problem: Problem, candidate: Candidate) -> list[Rows]:
 
 
 def additions(problem: Problem, candidate: Candidate) -> list[Rows]:
-    """The candidate with one pair more, of any two words, through any symmetry of the end that has more."""
+    """The candidate with one pair more, of any two free words, through any symmetry of the end that has more."""
     rows, winding = candidate.rows, candidate.winding
     free = int(np.argmax(problem.sizes))
     found = []
-    for one in range(problem.word_counts[0]):
-        for other in range(problem.word_counts[1]):
+    for one in problem.free_words(0):
+        for other in problem.free_words(1):
             for symmetry in range(problem.sizes[free]):
                 pair = [one * problem.sizes[0], other * problem.sizes[1]]
                 pair[free] += symmetry

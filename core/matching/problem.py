@@ -110,14 +110,22 @@ class Problem:
         self.sizes = [len(end.symmetries) for end in self.ends]
         self.word_counts = [len(end.words) for end in self.ends]
         self.locked = len(locks)
-        held = [len({lock.words[end] for lock in locks}) for end in (0, 1)]
-        self.least = self.locked + max(self.word_counts[end] - held[end] for end in (0, 1))
+        self.least = self.locked + max(len(self.free_words(end)) for end in (0, 1))
         self.work = 0
         self.samples = golden_samples(SAMPLES)
 
     def words(self, rows: np.ndarray, end: int) -> np.ndarray:
         """Words (N,) of one end of a candidate's rows."""
         return rows[end] // self.sizes[end]
+
+    def free_words(self, end: int) -> list[int]:
+        """Words of one end that no lock holds: the others are in the locked pairs and, if it can be, in no more."""
+        held = {lock.words[end] for lock in self.locks}
+        return [word for word in range(self.word_counts[end]) if word not in held]
+
+    def open_words(self, end: int) -> list[int]:
+        """Words for pairs beyond the locked ones: those that are free, or all where the other end needs partners."""
+        return self.free_words(end) or list(range(self.word_counts[end]))
 
     def may_turn(self, end: int, pair: int) -> bool:
         """Whether the symmetry of a pair is open."""
@@ -221,10 +229,8 @@ class Problem:
         return self._complete(first, last)
 
     def _filled(self, end: int) -> np.ndarray:
-        """Rows of the words of one end that no lock holds, in turn until there are enough."""
-        held = {lock.words[end] for lock in self.locks}
-        words = [word for word in range(self.word_counts[end]) if word not in held]
-        words = words or list(range(self.word_counts[end]))
+        """Rows of the open words of one end, in turn until there are enough."""
+        words = self.open_words(end)
         return (
             np.array([words[k % len(words)] for k in range(self.least - self.locked)], dtype=np.int64) * self.sizes[end]
         )

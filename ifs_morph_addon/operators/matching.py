@@ -8,7 +8,7 @@ from ...core.ifs import IFSError
 from ...core.matching import BUDGET, match_steps
 from ...core.morph import SCHEMES
 from .. import pairs
-from ..conversion import core_name, flip_of, identifier, shapes_of, tolerance
+from ..conversion import core_name, flip_of, identifier, pixel, shapes_of, tolerance
 from ..property_options import window_held
 from ..tasks import LongTask
 from .path import key_path, keying_problem, tell
@@ -80,7 +80,8 @@ class _Match(LongTask):
             pairs.write(matching, match.pairs, locks)
             if _is_open(owner.ifs_morph):
                 owner.ifs_morph.scheme = identifier(match.morph.scheme)
-            self.keep(owner, match)
+            report = self.keep(owner, match)
+        self.say(owner.ifs_morph, report)
 
 
 def _is_open(settings) -> bool:
@@ -105,13 +106,16 @@ class IFSMORPH_OT_morph(_Match, bpy.types.Operator):
         return problem is None
 
     def keep(self, owner, match):
-        """Key the path of the match, and say what came of it."""
+        """Key the path of the match; the report on what is keyed."""
         keyed = key_path(owner, match.path)
-        report = replace(match.report, path=replace(match.report.path, path=keyed))
-        tell(owner.ifs_morph, report.text())
-        broken = report.disconnected
-        for line in report.text().splitlines()[:2]:
-            self.report({"WARNING" if broken else "INFO"}, line)
+        return replace(match.report, path=replace(match.report.path, path=keyed))
+
+    def say(self, settings, report):
+        """Say what came of it, once the window is that of the new path."""
+        text = report.text(pixel(settings))
+        tell(settings, text)
+        for line in text.splitlines()[:2]:
+            self.report({"WARNING" if report.disconnected else "INFO"}, line)
 
 
 class IFSMORPH_OT_match_pairs(_Match, bpy.types.Operator):
@@ -123,8 +127,12 @@ class IFSMORPH_OT_match_pairs(_Match, bpy.types.Operator):
     poll = classmethod(matchable_morph)
 
     def keep(self, owner, match):
+        """Leave the keys as they are."""
+        return match.report
+
+    def say(self, settings, report):
         """Say what the pairs are."""
-        self.report({"INFO"}, match.report.text().splitlines()[0])
+        self.report({"INFO"}, report.text().splitlines()[0])
 
 
 CLASSES = (IFSMORPH_OT_morph, IFSMORPH_OT_match_pairs)

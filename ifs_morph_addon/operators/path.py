@@ -9,7 +9,7 @@ from ...core.parallel import part
 from ...core.path import METHODS, plan_path_steps
 from ...core.report import FrameCheck, check_frames, check_frames_steps
 from .. import fcurves
-from ..conversion import core_name, fit_window, morph_of, path_fingerprint, tolerance
+from ..conversion import core_name, fit_window, morph_of, path_fingerprint, pixel, tolerance
 from ..locus_picture import locus_steps
 from ..tasks import LongTask
 from .poll import editable_morph, sound_morph
@@ -55,8 +55,8 @@ class _KeyPath(LongTask):
         steps = plan_path_steps(morph_of(settings), locus, frames, tolerance(settings), method)
         path = yield from part(steps, LOCUS_SHARE if locus else 0.0, 1.0)
         keyed = key_path(owner, path)
-        tell(settings, replace(path.report, path=keyed).text())
         fit_window(owner)
+        tell(settings, replace(path.report, path=keyed).text(pixel(settings)))
         self.report({"INFO"}, _headline(settings.path.report))
 
 
@@ -130,7 +130,7 @@ class IFSMORPH_OT_check_path(LongTask, bpy.types.Operator):
             raise IFSError("The path must end after the frame at which it starts.")
         places = fcurves.sample_path(owner, frames)
         check = yield from check_frames_steps(morph_of(settings), places, tolerance(settings))
-        tell(settings, check.text())
+        tell(settings, check.text(pixel(settings)))
         broken = [frame for frame, state in zip(frames, check.state, strict=True) if state != 0]
         self.report({"WARNING" if broken else "INFO"}, _headline(settings.path.report))
 

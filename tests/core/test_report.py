@@ -108,6 +108,17 @@ def test_words_for_what_is_wrong():
     assert "Swell: 0.25 at most, 0.250 on average." in text
 
 
+def test_the_widest_gap_in_pixels_of_a_picture():
+    check = check_frames(GASKETS, line(50))
+    frame = int(np.argmax(np.where(check.state == DISCONNECTED, check.gap.mean(axis=1), 0)))
+    _, radius = GASKETS.at(*check.uv_swell[frame]).enclosing_disc
+    pixels = check.gap[frame].mean() * 2 * radius * 1000
+    assert pixels > 10
+    assert f"% of the shape's size or {pixels:.1f} pixels)" in check.text(1 / 1000)
+    assert "pixels" not in check.text()
+    assert "pixels" not in check_frames(GASKETS, line(50)[:1]).text(1 / 1000)
+
+
 def test_report_numbers_are_those_of_the_frames():
     path = plan_path(GASKETS, frames=50, method="straight unswollen")
     states = [connectedness(GASKETS.at(t, t)).state for t in np.arange(50) / 49]

@@ -64,6 +64,11 @@ def test_the_report_says_what_was_done(names):
     assert text.startswith(f"{len(found.pairs)} pairs of {SHAPES[names[0]].count} initial maps")
     assert "all in one piece" in text
     assert "element by element" in text
+    counts = [SHAPES[name].count for name in names]
+    naive = [Pair((k % counts[0],), (k % counts[1],)) for k in range(max(counts))]
+    flips = len(morph_of_pairs(*(SHAPES[name] for name in names), naive).flips)
+    assert found.report.naive_flips == flips
+    assert ("flipped" in text) == (flips > 0)
 
 
 @every_pair
@@ -116,6 +121,20 @@ def test_the_way_back_has_the_same_pairs():
     assert {(pair.initial, pair.final) for pair in forth.pairs} == {(pair.final, pair.initial) for pair in back.pairs}
     for t in (0, 0.3, 1):
         assert np.allclose(forth.morph.at(t, t).maps, back.morph.at(1 - t, 1 - t).maps, atol=1e-9)
+
+
+@pytest.mark.parametrize("final", [(0, 1, 2), (2, 1, 0)])
+def test_where_all_pairs_are_locked_no_other_is_added(final):
+    locked = tuple(Pair((k,), (word,)) for k, word in enumerate(final))
+    assert match(SHAPES["terdragon"], SHAPES["gasket"], frames=24, locked=locked, budget=5000).pairs == locked
+
+
+def test_a_locked_map_is_in_no_other_pair():
+    locked = (Pair((0,), (0,), winding=2),)
+    found = match(SHAPES["terdragon"], SHAPES["pentigasket"], frames=24, locked=locked, budget=20_000)
+    assert found.pairs[0] == locked[0]
+    assert len(found.pairs) > 3
+    assert all((0,) not in (pair.initial, pair.final) for pair in found.pairs[1:])
 
 
 def test_locked_pairs_stay():
