@@ -46,6 +46,7 @@ def mark(
         They must have an attractor.
     weights : (N,)
     labels : (N,) uint8
+        0 for maps that are not drawn.
     samples : float
         Points for each pixel of the canvas; all in all they are rounded up to a power of two.
     threads : int, optional
@@ -53,7 +54,8 @@ def mark(
         Of a recurrent IFS.
     """
     runs = _runs(canvas, samples)
-    for marks, _ in _games(canvas.shape, root, maps, weights, transitions, labels, runs, threads):
+    none = np.zeros(0, np.int64)
+    for marks, _ in _games(canvas.shape, root, maps, weights, transitions, labels, none, runs, threads):
         np.maximum(canvas, marks, out=canvas)
 
 
@@ -66,19 +68,26 @@ def deposit(
     mass: int,
     threads: int | None,
     transitions: np.ndarray | None = None,
+    opacity: np.ndarray | float = 1.0,
 ) -> None:
-    """Add `mass`, a large power of two, to the pixels that the game comes by, in equal parts; otherwise as `mark`."""
+    """Add `mass`, a large power of two, to the pixels that the game comes by, in equal parts; otherwise as `mark`.
+
+    Of each part only the share `opacity` (N,) of the map that led there is added.
+    """
     runs = _runs(canvas, samples)
-    for _, hits in _games(canvas.shape, root, maps, weights, transitions, np.zeros(0, np.uint8), runs, threads):
-        canvas += hits * (mass // (runs * RUN))
+    parts = np.rint(np.broadcast_to(opacity, len(maps)) * (mass // (runs * RUN))).astype(np.int64)
+    for _, sums in _games(canvas.shape, root, maps, weights, transitions, np.zeros(0, np.uint8), parts, runs, threads):
+        canvas += sums
 
 
 def _runs(canvas: np.ndarray, samples: float) -> int:
     return 1 << max(math.ceil(math.log2(samples * canvas.size / RUN)), 0)
 
 
-def _games(shape, root, maps, weights, transitions, labels, runs, threads) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Marks and hits, one of them empty, of the runs that each thread has played."""
+def _games(
+    shape, root, maps, weights, transitions, labels, parts, runs, threads
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Marks and sums of parts, one of them empty, of the runs that each thread has played."""
     height, width = shape
     rules = game_grammar(weights, transitions)
     first_bits = np.arange(2**GUIDE_BITS) / 2**GUIDE_BITS
@@ -90,17 +99,17 @@ def _games(shape, root, maps, weights, transitions, labels, runs, threads) -> li
 
     def game(share: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
         marks = np.zeros(height * width if len(labels) else 0, np.uint8)
-        hits = np.zeros(0 if len(labels) else height * width, np.int64)
-        play(root, maps, rules, guide, labels, starts, letters, *share, height, width, marks, hits)
-        return marks.reshape(-1, width), hits.reshape(-1, width)
+        sums = np.zeros(0 if len(labels) else height * width, np.int64)
+        play(root, maps, rules, guide, labels, parts, starts, letters, *share, height, width, marks, sums)
+        return marks.reshape(-1, width), sums.reshape(-1, width)
 
     bounds = np.linspace(0, runs, min(parallel.thread_count(threads), runs) + 1).astype(int)
     return parallel.run(game, list(pairwise(bounds)), threads)
 
 
 @njit(nogil=True, cache=True)
-def play(root, maps, rules, guide, labels, starts, letters, first_run, last_run, height, width, marks, hits):
-    """Play the runs from `first_run` to `last_run` (exclusive), each from its letter's start, for `marks` or `hits`.
+def play(root, maps, rules, guide, labels, parts, starts, letters, first_run, last_run, height, width, marks, sums):
+    """Play the runs from `first_run` to `last_run` (exclusive), each from its letter's start, for `marks` or `sums`.
 
     Random numbers are by xorshift64* (Vigna 2016), seeded by the number of the run.
     """
@@ -129,4 +138,4 @@ def play(root, maps, rules, guide, labels, starts, letters, first_run, last_run,
                 if labels.shape[0] > 0:
                     marks[pixel] = max(marks[pixel], labels[i])
                 else:
-                    hits[pixel] += 1
+                    sums[pixel] += parts[i]

@@ -20,7 +20,7 @@ import numpy as np
 
 from . import parallel
 from .enclosure import norm
-from .grammar import cumulated, word_grammar
+from .grammar import word_grammar
 from .ifs import IFS
 from .kernels import njit
 from .space import cloud as space_cloud
@@ -62,8 +62,9 @@ def point_cloud(
     threads: int | None = None,
     placing: tuple[float, ...] | None = None,
     address_transitions: np.ndarray | None = None,
+    address_opacity: np.ndarray | None = None,
 ) -> Points:
-    """Points of an attractor, spread as the weights and transitions say.
+    """Points of an attractor, spread as the weights, transitions and opacities say; none in hidden attractorlets.
 
     Parameters
     ----------
@@ -82,29 +83,36 @@ def point_cloud(
     address_transitions : (N, N), optional
         Transitions that give the addresses, those of `ifs` by default. Points of addresses that `ifs` does not allow
         are not on its attractor.
+    address_opacity : (N,), optional
+        Opacities that give the addresses, those of `ifs` by default. Points in attractorlets that `ifs` hides are left
+        out, and there are fewer than `count`.
 
     Raises
     ------
     IFSError
         If there is no attractor.
     ValueError
-        If the count is negative, or the weights are not N numbers, none negative and one positive.
+        If the count is negative, or weights or opacities are not N numbers, none negative and one positive.
     """
     count = int(count)
     if count < 0:
         raise ValueError(f"There cannot be {count} points.")
     weights = ifs.weights if address_weights is None else np.asarray(address_weights, dtype=float)
-    if weights.shape != (ifs.count,) or not (np.isfinite(weights).all() and (weights >= 0).all() and weights.sum() > 0):
-        raise ValueError(f"Address weights must be {ifs.count} numbers, none negative and one positive.")
+    opacity = ifs.opacity if address_opacity is None else np.asarray(address_opacity, dtype=float)
+    for values, name in ((weights, "weights"), (opacity, "opacities")):
+        if values.shape != (ifs.count,) or not (np.isfinite(values).all() and (values >= 0).all() and values.sum() > 0):
+            raise ValueError(f"Address {name} must be {ifs.count} numbers, none negative and one positive.")
+    opacity = None if (opacity == 1).all() else opacity
     if isinstance(ifs, SpaceIFS):
-        return _in_space(ifs, count, weights, threads, placing)
+        return _drawn(ifs, _in_space(ifs, count, weights, opacity, threads, placing))
     maps, center, radius = unit_maps(ifs, least_radius=1e-30)
     dimensions = 2
     if placing is not None:
         x, y, *_, unit = placing
         center, radius, dimensions = (center - (x, y)) / unit, radius / unit, 3
     points = Points(np.empty((count, dimensions), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
-    grammar = word_grammar(weights, ifs.transitions if address_transitions is None else address_transitions)
+    transitions = ifs.transitions if address_transitions is None else address_transitions
+    grammar = word_grammar(weights, transitions, opacity)
     words = share_out(maps, grammar, count)
     # Every point is the image of one point of the attractor, for each state: the fixed point of the map with the most
     # weight, where maps follow each other freely.
@@ -118,7 +126,15 @@ def point_cloud(
         place(words[slice(*rows)], start, *small, center, radius, bounds, dimensions, *found)
 
     _run(chunk, len(words), count, threads)
-    return points
+    return _drawn(ifs, points)
+
+
+def _drawn(ifs: IFS, points: Points) -> Points:
+    """Points without those in hidden attractorlets."""
+    if ifs.drawn.all():
+        return points
+    kept = ifs.drawn[points.attractorlet]
+    return Points(points.position[kept], points.attractorlet[kept], points.radius[kept])
 
 
 def _run(chunk: Callable, words: int, count: int, threads: int | None) -> None:
@@ -128,7 +144,12 @@ def _run(chunk: Callable, words: int, count: int, threads: int | None) -> None:
 
 
 def _in_space(
-    ifs: SpaceIFS, count: int, weights: np.ndarray, threads: int | None, placing: tuple[float, ...] | None
+    ifs: SpaceIFS,
+    count: int,
+    weights: np.ndarray,
+    opacity: np.ndarray | None,
+    threads: int | None,
+    placing: tuple[float, ...] | None,
 ) -> Points:
     """`point_cloud` of a shape in space."""
     center, radius = ifs.enclosing_ball
@@ -139,8 +160,9 @@ def _in_space(
         *origin, unit = placing
         center, radius = (center - origin) / unit, radius / unit
     points = Points(np.empty((count, 3), np.float32), np.empty(count, np.int32), np.empty(count, np.float32))
-    borders = cumulated(weights)
-    words = space_cloud.share_out(maps, borders, count)
+    grammar = word_grammar(weights, None, opacity)
+    borders = grammar.borders[0]
+    words = space_cloud.share_out(maps, grammar.borders[-1], borders, count)
     heaviest = int(np.argmax(weights))
     seed = np.linalg.solve(np.eye(3) - ifs.linear[heaviest], shift[heaviest])
     start, small = space_cloud.small_clouds(maps, np.ascontiguousarray(ifs.norms), borders, seed, words)

@@ -2,12 +2,12 @@
 
 `connectedness` is the one to use: what it calls disconnected is, and what it calls connected is at the tolerance.
 `index_buffer` (Burch & Hart 1997, Fig. 2) and `object_based` (Fig. 1, after Barnsley 1988) are kept as the paper has
-them, for comparison.
+them, for comparison; they look at whole attractors, whatever is hidden.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
@@ -40,7 +40,8 @@ class Verdict:
         distances of the attractorlets, 0 for a connected attractor. The high end is infinite where the algorithm knows
         none; both are NaN without an attractor.
     components : (N,) of int
-        For each map the lowest map whose attractorlet is known to be in one component with its own.
+        For each map the lowest map whose attractorlet is known to be in one component with its own; -1 for those that
+        are hidden.
     """
 
     state: Connectedness
@@ -49,7 +50,7 @@ class Verdict:
 
 
 def connectedness(ifs: IFS, tolerance: float = 1 / 300) -> Verdict:
-    """Decide with certainty whether an attractor is in one piece.
+    """Decide with certainty whether an attractor is in one piece, or what is drawn of it where maps are hidden.
 
     Attractorlets are compared by their enclosing discs and polygons, refined only where these meet; and an attractor
     whose maps cover areas enough is connected wherever they lie (the area certificate, see `overlap`).
@@ -57,6 +58,7 @@ def connectedness(ifs: IFS, tolerance: float = 1 / 300) -> Verdict:
     Parameters
     ----------
     ifs : IFS
+        In space, hidden maps count as if they were drawn.
     tolerance : float
         Relative to the enclosing diameter; a gap below it may count as none.
 
@@ -68,7 +70,7 @@ def connectedness(ifs: IFS, tolerance: float = 1 / 300) -> Verdict:
     """
     linear = np.ascontiguousarray(ifs.linear).reshape(ifs.count, -1)
     translation = ifs.translation[None].copy()
-    state, gap, labels = decide_frames(linear[None], translation, ifs.follows[None], float(tolerance), True)
+    state, gap, labels = decide_frames(linear[None], translation, ifs.allowed[None], float(tolerance), True)
     return Verdict(Connectedness(state[0]), (float(gap[0, 0]), float(gap[0, 1])), labels[0])
 
 
@@ -106,7 +108,7 @@ def index_buffer(
     if ifs.contractivity != Contractivity.CONTRACTIVE:
         return _without_attractor(ifs)
     labels = np.arange(ifs.count)
-    left, bottom, right, top = ifs.bounds
+    left, bottom, right, top = replace(ifs, opacity=None).bounds
     pixel = max(right - left, top - bottom) / resolution
     if pixel == 0:
         return Verdict(Connectedness.CONNECTED, (0.0, 0.0), np.zeros(ifs.count, dtype=int))

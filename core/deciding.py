@@ -20,7 +20,7 @@ def column_steps(
     start: np.ndarray,
     drift: np.ndarray,
     along: np.ndarray,
-    follows: np.ndarray,
+    allowed: np.ndarray,
     tolerance: float,
     with_gap: bool,
 ) -> Generator[None, None, Decided]:
@@ -32,8 +32,8 @@ def column_steps(
     start, drift : (N, 2), or (N, 3)
     along : (V,)
         The translations of attractor k are ``start + along[k] * drift``.
-    follows : (N, N) bool
-        See `IFS.follows`; in space all letters follow all.
+    allowed : (N + 1, N) bool
+        See `IFS.allowed`. In space all letters follow all, and what is hidden counts as if it were drawn.
     tolerance : float
         Relative to the enclosing diameter.
     with_gap : bool
@@ -49,10 +49,10 @@ def column_steps(
     """
     nodes, count = len(along), len(linear)
     state, gap, labels = np.empty(nodes, np.uint8), np.empty((nodes, 2)), np.empty((nodes, count), np.int64)
-    if not follows.all():
+    if not (allowed.all() or _in_space(start)):
         for node in range(nodes):
             translation = start + along[node] * drift
-            one = decide_frames(linear[None], translation[None], follows[None], tolerance, with_gap)
+            one = decide_frames(linear[None], translation[None], allowed[None], tolerance, with_gap)
             state[node], gap[node], labels[node] = (each[0] for each in one)
             yield
         return state, gap, labels
@@ -67,7 +67,7 @@ def column_steps(
 
 
 def decide_frames(
-    linear: np.ndarray, translation: np.ndarray, follows: np.ndarray, tolerance: float, with_gap: bool
+    linear: np.ndarray, translation: np.ndarray, allowed: np.ndarray, tolerance: float, with_gap: bool
 ) -> Decided:
     """States of attractors of any maps, such as the frames of a path.
 
@@ -75,7 +75,7 @@ def decide_frames(
     ----------
     linear : (F, N, 4), or (F, N, 9) in space
     translation : (F, N, 2), or (F, N, 3)
-    follows : (F, N, N) bool
+    allowed : (F, N + 1, N) bool
     tolerance, with_gap
         As above.
 
@@ -84,15 +84,19 @@ def decide_frames(
     As `column_steps`.
     """
     # Two kernels, for few who use the one ever need the other, and compiling takes its time.
-    if not follows.all():
-        return decide_recurrent(linear, translation, follows, float(tolerance), bool(with_gap))
+    if not (allowed.all() or _in_space(translation)):
+        return decide_recurrent(linear, translation, allowed, float(tolerance), bool(with_gap))
     return _kernels(translation).decide_each(linear, translation, float(tolerance), bool(with_gap))
 
 
-def are_connected(linear: np.ndarray, translation: np.ndarray, follows: np.ndarray, tolerance: float) -> np.ndarray:
+def are_connected(linear: np.ndarray, translation: np.ndarray, allowed: np.ndarray, tolerance: float) -> np.ndarray:
     """Which of some attractors (F,) are connected at the tolerance; arguments as in `decide_frames`."""
-    return decide_frames(linear, translation, follows, tolerance, False)[0] == CONNECTED
+    return decide_frames(linear, translation, allowed, tolerance, False)[0] == CONNECTED
 
 
 def _kernels(translation: np.ndarray) -> ModuleType:
-    return decision if translation.shape[-1] == 2 else space_decision
+    return space_decision if _in_space(translation) else decision
+
+
+def _in_space(translation: np.ndarray) -> bool:
+    return translation.shape[-1] == 3

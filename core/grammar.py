@@ -42,7 +42,7 @@ def state_count(grammar: Grammar) -> int:
     return int(grammar.state.max()) + 1
 
 
-def word_grammar(weights: np.ndarray, transitions: np.ndarray | None) -> Grammar:
+def word_grammar(weights: np.ndarray, transitions: np.ndarray | None, opacity: np.ndarray | None = None) -> Grammar:
     """How words go on, from the outermost letter inwards, and how they share out the measure of the chaos game.
 
     A point of the game has, as its address, the letters that led to it, the last one first. If pi is how often each
@@ -54,12 +54,22 @@ def word_grammar(weights: np.ndarray, transitions: np.ndarray | None) -> Grammar
     weights : (N,)
     transitions : (N, N), optional
         See `core.ifs.IFS`.
+    opacity : (N,), optional
+        By which the shares of the first letters are multiplied, so that there are none of hidden ones.
     """
     if transitions is None:
-        return free_grammar(weights)
+        grammar = free_grammar(weights)
+        return grammar if opacity is None else _beginning(grammar, _dimmed(weights, opacity))
     chances = _chances(weights, transitions)
     used = long_run(weights, chances)
-    return _grammar(transitions.T > 0, _normalised((used[:, None] * chances).T, transitions.T > 0), used)
+    first = used if opacity is None else _dimmed(used, opacity)
+    return _grammar(transitions.T > 0, _normalised((used[:, None] * chances).T, transitions.T > 0), first)
+
+
+def _dimmed(shares: np.ndarray, opacity: np.ndarray) -> np.ndarray:
+    """Shares (N,) times opacities; these alone if all that is drawn has none."""
+    dimmed = shares * opacity
+    return dimmed if dimmed.any() else opacity
 
 
 def set_grammar(weights: np.ndarray, transitions: np.ndarray | None) -> Grammar:
@@ -108,7 +118,16 @@ def _grammar(allowed: np.ndarray, shares: np.ndarray, first: np.ndarray) -> Gram
     """Gather letters into states, by what may come after them (N, N) and in what shares (N, N)."""
     rows = np.concatenate([allowed, np.round(shares, ALIKE)], axis=1)
     _, member, state = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    allowed = np.concatenate([allowed[member], np.ones((1, len(first)), bool)])
-    shares = np.concatenate([shares[member], first[None]])
-    borders = np.array([cumulated(row) for row in shares])
-    return Grammar(state.reshape(-1).astype(np.int64), np.ascontiguousarray(allowed), shares, borders)
+    borders = np.array([cumulated(row) for row in shares[member]])
+    state = state.reshape(-1).astype(np.int64)
+    return _beginning(Grammar(state, allowed[member], shares[member], borders), first)
+
+
+def _beginning(grammar: Grammar, first: np.ndarray) -> Grammar:
+    """The grammar of some states with a last row for the empty word, whose letters come in shares (N,) of their own."""
+    return Grammar(
+        grammar.state,
+        np.concatenate([grammar.allowed, np.ones((1, len(first)), bool)]),
+        np.concatenate([grammar.shares, first[None]]),
+        np.concatenate([grammar.borders, cumulated(first)[None]]),
+    )

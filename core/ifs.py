@@ -50,18 +50,23 @@ class IFS:
     transitions : (N, N), optional
         Makes it a *recurrent* IFS (Barnsley, Elton & Hardin 1989): entry [i, j] times weight j is how often map j is
         applied next after map i, never where it is 0. By default all are 1.
+    opacity : (N,), optional
+        Share, from 0 to 1, with which the points of each attractorlet are drawn, those that map i was applied to last.
+        Where it is 0 the map is *hidden*: it belongs to the attractor, and its attractorlet is not drawn. By default
+        all are 1.
 
     Raises
     ------
     IFSError
-        If the arrays have another shape, hold NaN or infinity, or a weight is negative. Maps that do not contract
-        are accepted, since a morph may pass through them: see `contractivity`.
+        If the arrays have another shape, hold NaN or infinity, a weight is negative, or no map is drawn. Maps that do
+        not contract are accepted, since a morph may pass through them: see `contractivity`.
     """
 
     maps: np.ndarray
     weights: np.ndarray | None = None
     name: str = field(default="")
     transitions: np.ndarray | None = None
+    opacity: np.ndarray | None = None
 
     DIMENSION: ClassVar[int] = 2
     """Of the space that the maps act on: 2, and 3 for a `space.ifs.SpaceIFS`."""
@@ -97,6 +102,11 @@ class IFS:
         maps.flags.writeable = weights.flags.writeable = False
         if self.transitions is not None:
             object.__setattr__(self, "transitions", _checked_transitions(self.transitions, len(maps), self._called))
+        opacity = np.ones(len(maps))
+        if self.opacity is not None:
+            opacity = _checked_opacity(self.opacity, len(maps), self._called)
+        opacity.flags.writeable = False
+        object.__setattr__(self, "opacity", opacity)
         object.__setattr__(self, "maps", maps)
         object.__setattr__(self, "weights", weights)
 
@@ -130,6 +140,19 @@ class IFS:
         if self.transitions is None:
             return np.ones((self.count, self.count), dtype=bool)
         return np.ascontiguousarray(self.transitions.T > 0)
+
+    @property
+    def drawn(self) -> np.ndarray:
+        """Which attractorlets (N,) are drawn, be it faintly."""
+        return self.opacity > 0
+
+    @property
+    def allowed(self) -> np.ndarray:
+        """Which letter may come after which (N + 1, N), as `follows`; in the last row those that may come first.
+
+        The words are those of all that is drawn, so a hidden letter may come anywhere but first.
+        """
+        return np.concatenate([self.follows, self.drawn[None]])
 
     @cached_property
     def norms(self) -> np.ndarray:
@@ -199,7 +222,7 @@ class IFS:
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
-        """Least x, least y, largest x, largest y of a box that is certain to hold the attractor, and close to it.
+        """Least x, least y, largest x, largest y of a box that is certain to hold all that is drawn, and close to it.
 
         Raises
         ------
@@ -212,8 +235,8 @@ class IFS:
             return (*(center - radius).tolist(), *(center + radius).tolist())
         translation = self.translation + self.linear @ center - center
         linear = np.ascontiguousarray(self.linear).reshape(-1, 4)
-        if self.is_recurrent:
-            reach = recurrent_reach(linear, translation, self.follows, radius, BOUNDS_DIRECTIONS, 1e-6 * radius)
+        if not self.allowed.all():
+            reach = recurrent_reach(linear, translation, self.allowed, radius, BOUNDS_DIRECTIONS, 1e-6 * radius)
         else:
             reach, _ = outer_polygon(linear, translation, radius, BOUNDS_DIRECTIONS, 1e-6 * radius)
         quarter = BOUNDS_DIRECTIONS // 4
@@ -249,6 +272,18 @@ def _checked_transitions(transitions: np.ndarray, count: int, called: str) -> np
             raise IFSError(f"{called} map {i + 1} may not be applied after any map; allow one, or remove the map.")
     transitions.flags.writeable = False
     return transitions
+
+
+def _checked_opacity(opacity: np.ndarray, count: int, called: str) -> np.ndarray:
+    opacity = _numbers(opacity, f"{called} opacities")
+    if opacity.shape != (count,):
+        raise IFSError(f"{called} has {count} maps but opacities of shape {opacity.shape}; give one a map.")
+    _require_finite(opacity, f"{called} opacity of map", "it")
+    for i in np.flatnonzero((opacity < 0) | (opacity > 1)):
+        raise IFSError(f"{called} opacity of map {i + 1} is {opacity[i]:g}; use 0 to 1.")
+    if not opacity.any():
+        raise IFSError(f"{called} all its maps are hidden; give at least one an opacity above 0.")
+    return opacity
 
 
 def _require_finite(values: np.ndarray, what: str, which: str) -> None:

@@ -124,7 +124,7 @@ def _end(ifs: IFS, end: int, parts: list[Part], part_of: np.ndarray) -> IFS:
     transitions = given[np.ix_(part_of, part_of)]
     transitions[:, ~whole] = 1.0
     transitions *= np.array([part.followers for part in parts])[:, part_of].T
-    return IFS(np.array(maps), ifs.weights[part_of] * whole, ifs.name, transitions)
+    return IFS(np.array(maps), ifs.weights[part_of] * whole, ifs.name, transitions, ifs.opacity[part_of])
 
 
 def _point(ifs: IFS, i: int) -> np.ndarray:

@@ -154,12 +154,12 @@ def compute_locus_steps(
     linear = morph.linear(u[:, None]).reshape(len(u), morph.count, -1)
     start = morph.translation(0.0)
     drift = morph.translation(1.0) - start
-    follows = morph.follows_at(u)
+    allowed = morph.allowed_at(u[:, None])
     state = np.empty((len(v), len(u)), dtype=np.uint8)
     low = np.empty((len(v), len(u)), dtype=np.float32)
 
     def fill(column: int) -> Generator[None, None, None]:
-        found = yield from column_steps(linear[column], start, drift, v, follows[column], tolerance, gap)
+        found = yield from column_steps(linear[column], start, drift, v, allowed[column], tolerance, gap)
         state[:, column], low[:, column] = found[0], found[1][:, 0]
 
     yield from parallel.steps(fill, range(len(u)), threads)

@@ -148,7 +148,7 @@ class Morph:
         maps = np.concatenate([linear, translation[..., None]], axis=-1)
         plain = self.initial.transitions is self.final.transitions is None
         transitions = None if plain else self.transitions_at(np.mean(u))
-        return type(self.initial)(maps, self.weights_at(u), transitions=transitions)
+        return type(self.initial)(maps, self.weights_at(u), transitions=transitions, opacity=self.opacity_at(u))
 
     def linear(self, u: np.ndarray | float, swell: np.ndarray | float = 0.0) -> np.ndarray:
         """Linear parts (..., N, 2, 2) for `u` and `swell` that broadcast to (..., N)."""
@@ -192,9 +192,18 @@ class Morph:
         start, end = (ones if ifs.transitions is None else ifs.transitions for ifs in (self.initial, self.final))
         return _blend(start, end, np.clip(u, 0.0, 1.0)[..., None, None])
 
-    def follows_at(self, u: np.ndarray | float) -> np.ndarray:
-        """Which letter may come after which in a word, at u (...): (..., N, N) of bool, see `IFS.follows`."""
-        return np.ascontiguousarray(np.swapaxes(self.transitions_at(u) > 0, -1, -2))
+    def opacity_at(self, u: np.ndarray | float) -> np.ndarray:
+        """Opacities (..., N) for `u` that broadcasts to (..., N): interpolated between the ends, held beyond them."""
+        start, end = self.initial.opacity, self.final.opacity
+        # What does not change stays so to the bit.
+        return np.where(start == end, start, _blend(start, end, np.clip(u, 0.0, 1.0)))
+
+    def allowed_at(self, u: np.ndarray | float) -> np.ndarray:
+        """What `IFS.allowed` is (..., N + 1, N) for `u` that broadcasts to (..., N)."""
+        drawn = self.opacity_at(u) > 0
+        # What may follow what is the same all the way.
+        follows = np.broadcast_to(self.initial.follows, (*drawn.shape[:-1], self.count, self.count))
+        return np.concatenate([follows, drawn[..., None, :]], axis=-2)
 
 
 def spread(places: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

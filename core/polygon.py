@@ -119,14 +119,14 @@ def outer_polygon(linear, translation, radius, directions, tolerance):
     return reach, corners
 
 
-def recurrent_reach(linear, translation, follows, radius, directions, tolerance):
-    """Reaches (directions,) of the attractor of a recurrent IFS: `shrink_polygon` with one for each attractorlet.
+def recurrent_reach(linear, translation, allowed, radius, directions, tolerance):
+    """Reaches (directions,) of what is drawn of any IFS: `shrink_polygon` with one for each attractorlet.
 
     Parameters
     ----------
     linear, translation : (N, 4), (N, 2)
-    follows : (N, N) bool
-        follows[i, k]: whether the letter k may come after i.
+    allowed : (N + 1, N) bool
+        allowed[i, k]: whether the letter k may come after i, and in the last row whether it may come first.
     radius, directions, tolerance
         As above.
     """
@@ -135,14 +135,14 @@ def recurrent_reach(linear, translation, follows, radius, directions, tolerance)
     offset = translation @ normal.T + ROUNDING * radius * (1 + share.sum(axis=-1))
     reach = np.full((len(linear), directions), float(radius))
     for _ in range(STEPS):
-        inside = np.where(follows[:, :, None], reach, -np.inf).max(axis=1)
+        inside = np.where(allowed[:-1, :, None], reach, -np.inf).max(axis=1)
         ends = np.take_along_axis(inside, sector, 1), np.take_along_axis(inside, next_sector, 1)
         shrunk = np.minimum(share[..., 0] * ends[0] + share[..., 1] * ends[1] + offset, reach)
         change = (reach - shrunk).max()
         reach = shrunk
         if change <= tolerance:
             break
-    return reach.max(axis=0)
+    return reach[allowed[-1]].max(axis=0)
 
 
 @njit(nogil=True, cache=True)

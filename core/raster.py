@@ -16,7 +16,7 @@ from . import chaos, drawing, spreading
 from .grammar import set_grammar, word_grammar
 from .ifs import IFS, Contractivity, IFSError
 from .pieces import LARGEST_GRID, measures, outlines
-from .words import LETTER, WORD_MASS, cut_dimensions, cut_words, unit_maps
+from .words import LETTER, MASS, WORD_MASS, cut_dimensions, cut_words, unit_maps
 
 MODES = ("set", "density", "attractorlet")
 
@@ -101,8 +101,9 @@ def render(
     -------
     (height, width)
         Row 0 is the lowest. *Set*: `dtype`, 1 where the attractor meets a pixel and 0 elsewhere. *Density*: int64, the
-        measure that weights and transitions give, `TOTAL_MASS` of it for the whole attractor. *Attractorlet*: uint8, 0
-        where there is none and 1 + i for attractorlet i, the last of those that meet the pixel.
+        measure that weights and transitions give, `TOTAL_MASS` of it for the whole attractor, that of each attractorlet
+        times its opacity. *Attractorlet*: uint8, 0 where there is none and 1 + i for attractorlet i, the last of those
+        that meet the pixel. Hidden attractorlets (`IFS.opacity`) leave no trace.
 
     Raises
     ------
@@ -130,27 +131,29 @@ def render(
         )
     root = np.array([radius * across, 0.0, (center[0] - x0) * across, 0.0, radius * along, (center[1] - y0) * along])
     labels = np.arange(1, ifs.count + 1, dtype=np.uint8) if mode == "attractorlet" else np.ones(ifs.count, np.uint8)
-    weights, transitions = ifs.weights, ifs.transitions
+    labels *= ifs.drawn
+    weights, opacity, transitions = ifs.weights, ifs.opacity, ifs.transitions
     grammar_of = word_grammar if mode == "density" else set_grammar
     grammar = grammar_of(weights, transitions)
     growth, dimension = cut_dimensions(maps, norms, grammar) if len(norms) else (np.inf, np.inf)
     if growth > FIXED_GROWTH:
         norms = np.zeros(0)
         if transitions is None:
-            maps, weights, labels = _distinct(maps, weights, labels)
+            maps, weights, opacity, labels = _distinct(maps, weights, opacity, labels)
             grammar = grammar_of(weights, None)
         growth, dimension = cut_dimensions(maps, norms, grammar)
     canvas = np.zeros((height, width), np.int64 if mode == "density" else np.uint8)
     if growth <= GROWTH_LIMIT:
-        _draw(canvas, root, maps, norms, grammar, labels, growth, dimension, samples, threads)
+        _draw(canvas, root, maps, norms, grammar, opacity, labels, growth, dimension, samples, threads)
     elif mode == "density":
-        chaos.deposit(canvas, root, maps, weights, max(samples, CHAOS_POINTS), TOTAL_MASS, threads, transitions)
+        samples = max(samples, CHAOS_POINTS)
+        chaos.deposit(canvas, root, maps, weights, samples, TOTAL_MASS, threads, transitions, opacity)
     elif not spreading.mark(canvas, root, maps, labels, transitions):
         chaos.mark(canvas, root, maps, weights, labels, max(samples, CHAOS_POINTS), threads, transitions)
     return canvas.astype(dtype, copy=False) if mode == "set" else canvas
 
 
-def _draw(canvas, root, maps, norms, grammar, labels, growth, dimension, samples, threads) -> None:
+def _draw(canvas, root, maps, norms, grammar, opacity, labels, growth, dimension, samples, threads) -> None:
     """Draw words into the canvas, their mass if it holds 64 bit integers and their labels otherwise."""
     density = canvas.dtype == np.int64
     height, width = canvas.shape
@@ -166,6 +169,11 @@ def _draw(canvas, root, maps, norms, grammar, labels, growth, dimension, samples
         piece *= 4
     # Sets are half octaves below the extent, so that maps that scale by one or more of these lead from set to set.
     smallest = extent * 2 ** (round(2 * math.log2(cell / extent)) / 2)
+    if not (opacity == 1).all():
+        # What is hidden was cut, too, so that nothing is cut otherwise once it shows.
+        letters = words[:, LETTER].astype(np.int64)
+        words[:, MASS] = np.floor(words[:, MASS] * opacity[letters])
+        words = words[labels[letters] > 0]
     if density:
         drawing.deposit(canvas, words, measures(maps, norms, grammar, cell, smallest, piece, ratio), threads)
     else:
@@ -250,15 +258,19 @@ def _extent(diameter: float, side: float, norms: np.ndarray) -> float:
     return side * 2 ** (math.ceil(2 * math.log2(diameter / side)) / 2)
 
 
-def _distinct(maps: np.ndarray, weights: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Equal maps as one, with all their weight and the last of their labels."""
+def _distinct(maps: np.ndarray, weights: np.ndarray, opacity: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Equal maps as one, with all their weight, their mean opacity and the highest of their labels."""
     last = {row.tobytes(): k for k, row in enumerate(maps)}
     if len(last) == len(maps):
-        return maps, weights, labels
+        return maps, weights, opacity, labels
     kept = np.array(sorted(last.values()))
     place = {row.tobytes(): k for k, row in enumerate(maps[kept])}
     member = [place[row.tobytes()] for row in maps]
-    return np.ascontiguousarray(maps[kept]), np.bincount(member, weights=weights), labels[kept]
+    total, seen = np.bincount(member, weights=weights), np.bincount(member, weights=weights * opacity)
+    mean = np.divide(seen, total, out=np.zeros(len(kept)), where=total > 0)
+    highest = np.zeros(len(kept), np.uint8)
+    np.maximum.at(highest, member, labels)
+    return np.ascontiguousarray(maps[kept]), total, mean, highest
 
 
 def _checked_size(size: tuple[int, int]) -> tuple[int, int]:

@@ -1,7 +1,7 @@
 """Connectedness of recurrent IFSs, in which not every map may come after every other (Barnsley, Elton & Hardin 1989).
 
 Their attractorlets are images of parts of the attractor, not of all of it. So it does not do that the attractorlets
-hang together: each of them must.
+hang together: each of them must. The same is true of any IFS some of whose attractorlets are not drawn.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ MOST_WORK = 12_000
 
 
 @njit(nogil=True, cache=True)
-def decide_recurrent(linear, translation, follows, tolerance, with_gap):
-    """States of the attractors of recurrent IFSs; arguments and returns as `deciding.decide_frames`."""
+def decide_recurrent(linear, translation, allowed, tolerance, with_gap):
+    """States of what is drawn of recurrent IFSs; arguments and returns as `deciding.decide_frames`."""
     frames, count = linear.shape[0], linear.shape[1]
     state, gap = np.empty(frames, np.uint8), np.full((frames, 2), np.nan)
     labels = np.empty((frames, count), np.int64)
@@ -37,9 +37,10 @@ def decide_recurrent(linear, translation, follows, tolerance, with_gap):
     room = np.empty(STACK, np.int32), np.empty(STACK, np.int32), np.empty(STACK)
     tree = empty_tree(np.int64(CAPACITY))
     for frame in range(frames):
+        follows, drawn = allowed[frame][:count], allowed[frame][count]
         for i in range(count):
-            labels[frame, i] = i
-        outcome, parent, letter, product, size, limit = shrinking_words(linear[frame], follows[frame])
+            labels[frame, i] = i if drawn[i] else -1
+        outcome, parent, letter, product, size, limit = shrinking_words(linear[frame], follows)
         if outcome != enclosure.COVERED:
             state[frame] = NO_ATTRACTOR if outcome == enclosure.NO_ATTRACTOR else UNDECIDED
             continue
@@ -54,7 +55,7 @@ def decide_recurrent(linear, translation, follows, tolerance, with_gap):
         else:
             view = View(x, y, 0.0, radius, SLACK * max(radius, abs(x) + abs(y)) + ROUNDING * largest)
             state[frame], low, high = decide(
-                tree, room, linear[frame], moved, follows[frame], view, tolerance, with_gap, labels[frame]
+                tree, room, linear[frame], moved, follows, drawn, view, tolerance, with_gap, labels[frame]
             )
             if state[frame] == CONNECTED:
                 gap[frame, 0], gap[frame, 1] = 0.0, tolerance
@@ -63,18 +64,18 @@ def decide_recurrent(linear, translation, follows, tolerance, with_gap):
                 gap[frame, 1] = max(high / (2 * radius), tolerance, gap[frame, 0])
         if state[frame] == CONNECTED:
             for i in range(count):
-                labels[frame, i] = 0
+                labels[frame, i] = drawn.argmax() if drawn[i] else -1
     return state, gap, labels
 
 
 @njit(nogil=True, cache=True)
-def decide(tree, room, linear, translation, follows, view, tolerance, with_gap, labels):
-    """State of one attractor, and the bracket of its gap; `labels` (N,) as in `decision.decide`.
+def decide(tree, room, linear, translation, follows, drawn, view, tolerance, with_gap, labels):
+    """State of one attractor, and the bracket of its gap; `labels` (N,) as in `decision.decide`, -1 if not drawn.
 
     Attractorlet i is ``A_i = w_i(U A_k)`` over the letters k that may follow i. All of them are connected if, for each
-    i, the overlap graph of those A_k is; and then A is, if the overlap graph of all is. Where an A_i falls into parts,
-    these take its place, each a letter of its own, and all is looked at again. The gap is that between attractorlets
-    or such parts; within them there may be wider ones.
+    i, the overlap graph of those A_k is; and then what is drawn of A is, if the overlap graph of its A_i is. Where an
+    A_i falls into parts, these take its place, each a letter of its own, and all is looked at again. The gap is that
+    between attractorlets or such parts; within them there may be wider ones.
     """
     count = linear.shape[0]
     of = np.arange(count)
@@ -92,12 +93,17 @@ def decide(tree, room, linear, translation, follows, view, tolerance, with_gap, 
         meets, known = np.full((vertices, vertices), UNKNOWN, np.int8), np.zeros((vertices, vertices), np.int64)
         tree.used[1] = 0
         group = np.arange(vertices)
-        everything = np.ones(vertices, np.bool_)
-        sure = join_meeting(tree, room, allowed, discs, view, tolerance, meets, known, everything, group)
+        seen = drawn[of]
+        sure = join_meeting(tree, room, allowed, discs, view, tolerance, meets, known, seen, group)
+        pieces = 0
+        for v in range(vertices):
+            if not seen[v]:
+                group[v] = -1
+            pieces += group[v] == v
         if vertices == count:
             for i in range(count):
                 labels[i] = group[i]
-        if group.any():
+        if pieces > 1:
             if not sure:
                 return UNDECIDED, 0.0, 2 * view.radius
             low = high = 0.0

@@ -159,11 +159,11 @@ def check_frames_steps(
     uv_swell = np.asarray(uv_swell, dtype=float)
     if len(uv_swell) == 0:
         raise ValueError("There are no frames to check.")
-    linear, translation, follows = family(morph, uv_swell)
+    linear, translation, allowed = family(morph, uv_swell)
 
     def check(start: int) -> tuple[np.ndarray, np.ndarray]:
         frames = slice(start, start + CHUNK)
-        return decide_frames(linear[frames], translation[frames], follows[frames], float(tolerance), True)[:2]
+        return decide_frames(linear[frames], translation[frames], allowed[frames], float(tolerance), True)[:2]
 
     chunks = yield from parallel.steps(check, range(0, len(uv_swell), CHUNK), threads)
     state, gap = (np.concatenate([chunk[k] for chunk in chunks]) for k in (0, 1))
@@ -188,13 +188,13 @@ def _widest(morph: Morph, uv_swell: np.ndarray, state: np.ndarray, gap: np.ndarr
 
 
 def family(morph: Morph, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Linear parts (F, N, 4), translations (F, N, 2), and which letters follow which (F, N, N), as kernels take them.
+    """Linear parts (F, N, 4), translations (F, N, 2), and `IFS.allowed` (F, N + 1, N), as kernels take them.
 
     At places (F, 3) or (F, 3 + 2N), see `morph.spread`. In space linear parts are (F, N, 9) and translations (F, N, 3).
     """
     u, v, swell = spread(places, morph.count)
     linear = np.ascontiguousarray(morph.linear(u, swell)).reshape(len(places), morph.count, morph.DIMENSION**2)
-    return linear, np.ascontiguousarray(morph.translation(v)), morph.follows_at(places[:, 0])
+    return linear, np.ascontiguousarray(morph.translation(v)), morph.allowed_at(u)
 
 
 def _sentence(subject: str, check: FrameCheck, pixel: float | None) -> str:

@@ -38,6 +38,7 @@ def mark(
     maps : (N, 6)
         They must have an attractor, in the unit disc.
     labels : (N,) uint8
+        0 for maps that are not drawn.
     transitions : (N, N), optional
         Of a recurrent IFS.
 

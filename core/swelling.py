@@ -47,10 +47,10 @@ def _least(morph: Morph, place: np.ndarray, start: float, tolerance: float) -> f
     swells = np.append(start, np.arange(np.floor(start * LEVELS) + 1, LEVELS + 1) / LEVELS)
     places = np.tile(place, (len(swells), 1))
     places[:, 2] = swells
-    linear, translation, follows = family(morph, places)
+    linear, translation, allowed = family(morph, places)
 
     def holds(k: int) -> bool:
-        return bool(are_connected(linear[k : k + 1], translation[k : k + 1], follows[k : k + 1], tolerance)[0])
+        return bool(are_connected(linear[k : k + 1], translation[k : k + 1], allowed[k : k + 1], tolerance)[0])
 
     stride = LONG_STRIDE if morph.DIMENSION == 3 or morph.is_recurrent else STRIDE
     for found in sorted({*range(0, len(swells), stride), len(swells) - 1}):
@@ -73,14 +73,14 @@ def least_swell_field_steps(
     linear = linear.reshape(len(u), levels + 1, morph.count, -1)
     start = morph.translation(0.0)
     drift = morph.translation(1.0) - start
-    follows = morph.follows_at(u)
+    allowed = morph.allowed_at(u[:, None])
 
     def column(k: int) -> Generator[None, None, np.ndarray]:
         least = np.full(len(v), NEVER)
         still = np.arange(len(v))
         for level, swell in enumerate(swells):
             state, _, _ = yield from column_steps(
-                linear[k, level], start, drift, v[still], follows[k], tolerance, False
+                linear[k, level], start, drift, v[still], allowed[k], tolerance, False
             )
             least[still[state == Connectedness.CONNECTED]] = swell
             if level == 0:

@@ -86,7 +86,15 @@ def shape_ifs(shape) -> IFS:
     shape.maps.foreach_get("weight", weights)
     transitions = shape_transitions(shape)
     chances = None if transitions is None else transitions.tobytes()
-    return _ifs(shape_maps(shape).tobytes(), weights.tobytes(), shape.name, chances, shape.in_space)
+    opacity = shape_opacity(shape).tobytes()
+    return _ifs(shape_maps(shape).tobytes(), weights.tobytes(), shape.name, chances, opacity, shape.in_space)
+
+
+def shape_opacity(shape) -> np.ndarray:
+    """Opacities (N,) of a shape's maps."""
+    opacity = np.empty(len(shape.maps), dtype=np.float32)
+    shape.maps.foreach_get("opacity", opacity)
+    return opacity.astype(float)
 
 
 def shape_transitions(shape) -> np.ndarray | None:
@@ -105,16 +113,17 @@ def shape_transitions(shape) -> np.ndarray | None:
 
 
 @lru_cache(maxsize=64)
-def _ifs(maps: bytes, weights: bytes, name: str, transitions: bytes | None, in_space: bool) -> IFS:
+def _ifs(maps: bytes, weights: bytes, name: str, transitions: bytes | None, opacity: bytes, in_space: bool) -> IFS:
     weights = np.frombuffer(weights, dtype=np.float32).astype(float)
     if transitions is not None:
         transitions = np.frombuffer(transitions).reshape(len(weights), -1)
     kind, rows = (SpaceIFS, 3) if in_space else (IFS, 2)
-    ifs = kind(np.frombuffer(maps).reshape(-1, rows, rows + 1), None, name, transitions)
+    opacity = np.frombuffer(opacity)
+    ifs = kind(np.frombuffer(maps).reshape(-1, rows, rows + 1), None, name, transitions, opacity)
     if not weights.any():
         return ifs
     # A weight of zero stands for the share that the map has by default.
-    return kind(ifs.maps, np.where(weights == 0, ifs.weights, weights), name, transitions)
+    return kind(ifs.maps, np.where(weights == 0, ifs.weights, weights), name, transitions, opacity)
 
 
 def morph_of(settings) -> Morph:
@@ -237,6 +246,9 @@ def fingerprint(settings, *more) -> str:
         digest.update(shape_maps(shape).tobytes())
         if shape.recurrent:
             digest.update(repr([tuple(item.transitions) for item in shape.maps]).encode())
+        hidden = shape_opacity(shape) == 0
+        if hidden.any():
+            digest.update(hidden.tobytes())
     winding = [item.winding for item in settings.final.maps]
     digest.update(repr((settings.scheme, winding, settings.gap_resolution, more)).encode())
     if has_pairs(settings):
@@ -277,6 +289,7 @@ def write_shape(shape, ifs: IFS) -> None:
         item.name = f"Map {k + 1}"
         item.color = color[:3]
         item.weight = 0.0 if by_area else float(ifs.weights[k])
+        item.opacity = ifs.opacity[k]
         item.winding = 0
     shape.in_space = ifs.DIMENSION == 3
     maps.foreach_set("matrix_in_space" if shape.in_space else "matrix", ifs.maps.astype(np.float32).ravel())

@@ -13,6 +13,7 @@ from .conversion import (
     shape_colors,
     shape_ifs,
     shape_maps,
+    shape_opacity,
     shape_transitions,
     write_shape,
 )
@@ -34,7 +35,7 @@ def require_storable(entry: Entry) -> None:
 
 
 def write_entry(shape, entry: Entry) -> None:
-    """Fill a shape with an entry: its maps, its weights, and its colors where it has a palette.
+    """Fill a shape with an entry: its maps, weights and opacities, and its colors where it has a palette.
 
     Raises
     ------
@@ -56,21 +57,23 @@ def shape_entry(shape, name: str) -> Entry:
     weights = ifs.weights if any(item.weight for item in shape.maps) else None
     transitions = shape_transitions(shape)
     transitions = None if transitions is None else _decimal(transitions)
-    return _entry(shape.name or name, _decimal(shape_maps(shape)), weights, transitions, shape_colors(shape))
+    opacity = _decimal(shape_opacity(shape))
+    return _entry(shape.name or name, _decimal(shape_maps(shape)), weights, transitions, opacity, shape_colors(shape))
 
 
 def frame_entry(settings, name: str) -> Entry:
     """Return the shape that a morph has at its (u,v) and swell as an entry; raises IFSError."""
     ifs = frame_of(settings, morph_of(settings))
-    return _entry(name, ifs.maps, ifs.weights, ifs.transitions, frame_colors(settings)[:, :3])
+    return _entry(name, ifs.maps, ifs.weights, ifs.transitions, ifs.opacity, frame_colors(settings)[:, :3])
 
 
-def _entry(name, maps, weights, transitions, colors) -> Entry:
+def _entry(name, maps, weights, transitions, opacity, colors) -> Entry:
+    opacities = None if (opacity == 1).all() else opacity
     colors = [Color(color).from_scene_linear_to_srgb() for color in colors.tolist()]
     if len(colors) > 256:
-        return Entry(name, maps, weights, transitions)
+        return Entry(name, maps, weights, transitions, opacities=opacities)
     places, palette = palette_of(np.array(colors))
-    return Entry(name, maps, weights, transitions, colors=places, palette=palette)
+    return Entry(name, maps, weights, transitions, colors=places, opacities=opacities, palette=palette)
 
 
 def _decimal(values: np.ndarray) -> np.ndarray:

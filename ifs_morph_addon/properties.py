@@ -120,6 +120,18 @@ class IFSMorphMap(bpy.types.PropertyGroup):
         override=LEAF,
         update=redraw,
     )
+    opacity: FloatProperty(
+        name="Opacity",
+        description="How visible the points of this map's attractorlet are. At zero the map belongs to the shape, "
+        "but its attractorlet is not drawn",
+        subtype="FACTOR",
+        default=1.0,
+        min=0.0,
+        max=1.0,
+        options=STILL,
+        override=LEAF,
+        update=refit,
+    )
     color: FloatVectorProperty(
         name="Color",
         description="Color of this map's attractorlet",

@@ -148,7 +148,7 @@ def write_shapes(path: str | Path, shapes: Mapping[str, IFS]) -> None:
     FormatError
         As `write_file`.
     """
-    write_file(path, [Entry(name, ifs.maps, ifs.weights, ifs.transitions) for name, ifs in shapes.items()])
+    write_file(path, [Entry.of(name, ifs) for name, ifs in shapes.items()])
 
 
 def _reason(entry: Entry) -> str:

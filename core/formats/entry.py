@@ -46,7 +46,7 @@ class Entry:
     color_speeds : (N,), optional
         Share of a map's own color in its attractorlet, the rest being the color of the point before.
     opacities : (N,), optional
-        How visible each map's attractorlet is. None stands for ones.
+        How visible each map's attractorlet is, from 0 to 1. None stands for ones.
     palette : (K, 3) uint8, optional
         Red, green and blue from 0 to 255.
     notes : tuple of str
@@ -84,15 +84,21 @@ class Entry:
     def _kind(self) -> type[IFS]:
         return IFS if self.dimension == 2 else SpaceIFS
 
+    @classmethod
+    def of(cls, name: str, ifs: IFS, **more) -> Entry:
+        """Return the entry of an IFS, with `more` of the parameters above."""
+        opacities = None if (ifs.opacity == 1).all() else ifs.opacity
+        return cls(name, ifs.maps, ifs.weights, ifs.transitions, opacities=opacities, **more)
+
     def ifs(self) -> IFS:
         """Return the shape as an IFS, a recurrent one if it has transitions, a `SpaceIFS` if it lies in space.
 
         Raises
         ------
         IFSError
-            If it has transitions that leave no map to follow another, or any in space.
+            If it has transitions that leave no map to follow another, or any in space, or hides all its maps.
         """
-        return self._kind(self.maps, self.weights, self.name, self.transitions)
+        return self._kind(self.maps, self.weights, self.name, self.transitions, self.opacities)
 
 
 @dataclass(frozen=True)

@@ -222,7 +222,8 @@ class _Row:
         chaos = xform.numbers("chaos", [])
         if min([weight or 0.0, *chaos]) < 0:
             raise FormatError(f"{xform.called}: its weight or chaos is negative.")
-        return _Row(weight, xform.number("color", 0.0), xform.color_speed, xform.opacity, tuple(chaos))
+        opacity = min(max(xform.opacity, 0.0), 1.0)
+        return _Row(weight, xform.number("color", 0.0), xform.color_speed, opacity, tuple(chaos))
 
 
 def _symmetry_colors(kind: int) -> list[float]:
@@ -278,14 +279,9 @@ def _tabled(flame: _Flame, maps: np.ndarray, rows: list[_Row]) -> Entry:
 
 
 def _used(entry: Entry) -> Entry:
-    """Leave out the maps without weight, which a flame never draws; say which are hidden otherwise."""
+    """Leave out the maps without weight, which a flame never uses."""
     used = entry.weights > 0 if entry.weights is not None else np.ones(entry.count, bool)
     notes = [f"{called(entry.name)}, map {k + 1}: it has no weight and is left out." for k in np.flatnonzero(~used)]
-    if entry.opacities is not None:
-        hidden = [str(k + 1) for k in np.flatnonzero(used & (entry.opacities == 0))]
-        if hidden:
-            listed = f"map {hidden[0]} is" if len(hidden) == 1 else f"maps {', '.join(hidden)} are"
-            notes.append(f"{called(entry.name)}: {listed} hidden in the flame (opacity 0) and shown here.")
     entry = replace(entry, notes=(*entry.notes, *notes))
     return entry if used.all() else _chosen(entry, np.flatnonzero(used))
 
@@ -313,15 +309,20 @@ def _unfolded(entry: Entry) -> Entry:
         return entry
     weights = np.ones(entry.count) if entry.weights is None else entry.weights
     frequencies = np.delete(weights, others) / weights.sum()
-    unfolded = unfold(np.array([linear for linear in isometries if linear is not None]), frequencies)
+    opacities = np.ones(entry.count) if entry.opacities is None else entry.opacities
+    linear = np.array([linear for linear in isometries if linear is not None])
+    unfolded = unfold(linear, frequencies, np.delete(opacities, others))
     if unfolded is None or len(unfolded[0]) * len(others) > LARGEST_COUNT:
         return entry
-    group, shares = unfolded
+    group, shares, seen = unfolded
     turned = np.concatenate([group @ entry.maps[k, :, :2] for k in others])
     moved = np.concatenate([group @ entry.maps[k, :, 2] for k in others])
     result = _chosen(entry, np.repeat(others, len(group)))
+    # Drawn are the points that an isometry is applied to last, and those that none is.
+    seen = seen + np.outer(opacities[others], np.arange(len(group)) == 0)
     return replace(
         result,
         maps=np.concatenate([turned, moved[:, :, None]], axis=2),
         weights=np.outer(weights[others], shares).ravel(),
+        opacities=None if entry.opacities is None else np.minimum(seen / shares, 1.0).ravel(),
     )

@@ -235,7 +235,7 @@ def write_ifs(entries: Iterable[Entry]) -> str:
     Raises
     ------
     FormatError
-        If an entry has chaos, or a map without weight.
+        If an entry has chaos, a map that is hidden or faint, or one without weight.
     """
     taken: set[str] = set()
     blocks = []
@@ -244,6 +244,13 @@ def write_ifs(entries: Iterable[Entry]) -> str:
         if entry.transitions is not None:
             raise FormatError(
                 f"{called(entry.name)} has chaos, for which an .ifs file has no place; write a .flame file."
+            )
+        if entry.opacities is not None and (entry.opacities != 1).any():
+            k = int(np.argmax(entry.opacities != 1))
+            opacity = entry.opacities[k]
+            raise FormatError(
+                f"{called(entry.name)}, map {k + 1}: it has an opacity of {opacity:g}, for which an .ifs file "
+                "has no place; write a .flame file."
             )
         # Fractint ends a name at a space, and takes names that differ in case for one.
         plain = re.sub(r"[^A-Za-z0-9_.+-]", "_", entry.name) or "_"

@@ -42,7 +42,9 @@ def isometry(matrix: np.ndarray) -> np.ndarray | None:
     return None
 
 
-def unfold(linear: np.ndarray, frequencies: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+def unfold(
+    linear: np.ndarray, frequencies: np.ndarray, opacities: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     """Return the group that isometries generate, and how often each of its elements follows a map of the others.
 
     Parameters
@@ -51,6 +53,8 @@ def unfold(linear: np.ndarray, frequencies: np.ndarray) -> tuple[np.ndarray, np.
         The isometries.
     frequencies : (K,)
         Their probabilities q_g, together less than 1.
+    opacities : (K,)
+        Shares with which the points are drawn that an isometry is applied to last.
 
     Returns
     -------
@@ -58,6 +62,8 @@ def unfold(linear: np.ndarray, frequencies: np.ndarray) -> tuple[np.ndarray, np.
         Its elements, the identity first.
     shares : (G,)
         c_h, with the sum ``1 / (1 - sum q_g)``.
+    seen : (G,)
+        What is drawn of them by the isometries, ``sum q_g o_g c_k`` over those that take an element k to h.
 
     None if the group is larger than is sensible.
     """
@@ -69,12 +75,13 @@ def unfold(linear: np.ndarray, frequencies: np.ndarray) -> tuple[np.ndarray, np.
                 group.append(product)
         if len(group) > LARGEST_GROUP:
             return None
-    follow = np.zeros((len(group), len(group)))
-    for generator, frequency in zip(linear, frequencies, strict=True):
+    follow, drawn = np.zeros((2, len(group), len(group)))
+    for generator, frequency, opacity in zip(linear, frequencies, opacities, strict=True):
         for k, element in enumerate(group):
             follow[_find(group, generator @ element), k] += frequency
+            drawn[_find(group, generator @ element), k] += frequency * opacity
     shares = np.linalg.solve(np.eye(len(group)) - follow, np.eye(len(group))[0])
-    return np.array(group), shares
+    return np.array(group), shares, drawn @ shares
 
 
 def _turn(share: float) -> np.ndarray:

@@ -160,7 +160,9 @@ def _end(ifs: IFS, listed: list[tuple[Word, Symmetry | None]], name: str) -> IFS
         raise IFSError(
             f"The {name} shape is recurrent: no symmetry may turn its maps; match again, or clear the pairs."
         )
-    return type(ifs)(compose(maps, gauges), weights, ifs.name, _transitions(ifs, words))
+    # The piece of a word lies in the attractorlet of its first letter, the map that is applied last.
+    opacity = ifs.opacity[[word[0] for word in words]]
+    return type(ifs)(compose(maps, gauges), weights, ifs.name, _transitions(ifs, words), opacity)
 
 
 def _transitions(ifs: IFS, words: list[Word]) -> np.ndarray | None:

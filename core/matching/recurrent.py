@@ -1,4 +1,4 @@
-"""The search between shapes one of which is recurrent: candidates are scored by the morphs that they stand for.
+"""The search between shapes one of which is recurrent or hides maps: candidates are scored by the morphs they make.
 
 What may follow what depends on the pairs, and with it the maps that a morph has (see `joining`). So each candidate's
 morph is made, and decided as it will be drawn.
@@ -21,7 +21,7 @@ EFFORT = 6
 
 
 class RecurrentProblem(Problem):
-    """The words and locks of a search between two shapes, whatever may follow what."""
+    """The words and locks of a search between two shapes, whatever may follow what and whatever is hidden."""
 
     def _score(
         self, rows: np.ndarray, winding: np.ndarray, samples: np.ndarray, bound: float, extra: float
@@ -44,7 +44,9 @@ def problem_of(
     initial: End, final: End, tolerance: float, locks: tuple[Lock, ...] = (), threads: int | None = None
 ) -> Problem:
     """The problem of two ends, of the kind that they need."""
-    kind = RecurrentProblem if initial.ifs.is_recurrent or final.ifs.is_recurrent else Problem
+    # In space nothing is recurrent, and what is hidden counts as drawn.
+    plain = initial.ifs.DIMENSION == 3 or all(end.ifs.allowed.all() for end in (initial, final))
+    kind = Problem if plain else RecurrentProblem
     return kind(initial, final, tolerance, locks, threads)
 
 
@@ -59,12 +61,12 @@ def _least_swells(morph: Morph, samples: np.ndarray, tolerance: float, room: flo
         known = swells[:place]
         costs = MEAN * (known.sum() + levels) / len(samples) + WORST * np.maximum(known.max(initial=0.0), levels)
         most = np.count_nonzero(costs <= room) - 1
-        linear, translation, follows = family(morph, np.column_stack([np.full((len(LEVELS), 2), at), LEVELS]))
+        linear, translation, allowed = family(morph, np.column_stack([np.full((len(LEVELS), 2), at), LEVELS]))
         low, high, level = 0, most + 1, 0
         while low < high and level < len(LEVELS):
             here = slice(level, level + 1)
             decided += 1
-            if are_connected(linear[here], translation[here], follows[here], tolerance)[0]:
+            if are_connected(linear[here], translation[here], allowed[here], tolerance)[0]:
                 high = level
             else:
                 low = level + 1

@@ -36,10 +36,10 @@ def empty_word(word):
 
 
 @njit(nogil=True, cache=True)
-def share_out(maps, borders, count):
+def share_out(maps, first_borders, borders, count):
     """Words of one letter or more that share out the points from 0 to `count`, as a table (M, 15) in their order.
 
-    Each has FEW points at most.
+    Each has FEW points at most. The parts of first letters have borders of their own.
     """
     words, found = np.empty((256, COLUMNS)), 0
     # Columns 12 and 13 of the stack are the ends of the word's part of the interval from 0 to `count`.
@@ -64,9 +64,9 @@ def share_out(maps, borders, count):
             continue
         if top + maps.shape[0] > stack.shape[0]:
             stack = grown(stack, 2 * stack.shape[0] + maps.shape[0])
-        right = high
+        right, parts = high, borders if letter >= 0 else first_borders
         for i in range(maps.shape[0] - 1, -1, -1):
-            left = low + (high - low) * borders[i]
+            left = low + (high - low) * parts[i]
             append(word, maps[i], stack[top])
             stack[top, FIRST], stack[top, COUNT] = left, right
             stack[top, LETTER] = letter if letter >= 0 else i

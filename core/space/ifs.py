@@ -30,6 +30,8 @@ class SpaceIFS(IFS):
     name : str
     transitions : None
         Maps of space follow each other freely.
+    opacity : (N,), optional
+        As for `IFS`, but for certified connectedness all maps count as drawn.
 
     Raises
     ------
@@ -76,7 +78,7 @@ class SpaceIFS(IFS):
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float, float, float]:
-        """Least x, y, z, largest x, y, z of a box that is certain to hold the attractor, and close to it.
+        """Least x, y, z, largest x, y, z of a box that is certain to hold all that is drawn, close to it.
 
         Raises
         ------
@@ -89,7 +91,7 @@ class SpaceIFS(IFS):
         return (*map(float, least), *map(float, most))
 
     def _reach(self, direction: np.ndarray, center: np.ndarray, radius: float) -> float:
-        """Upper bound of how far the attractor reaches from the centre in a direction (3,).
+        """Upper bound of how far all that is drawn reaches from the centre in a direction (3,).
 
         What a word adds to the reach depends on the image of the direction under its transpose alone, so the words
         are kept as such rows; of those with equal rows only the one that reaches furthest can matter.
@@ -97,6 +99,8 @@ class SpaceIFS(IFS):
         shift = self.translation + self.linear @ center - center
         inside = np.linalg.solve(np.eye(3) - self.linear[0], shift[0])
         rows, offsets = direction[None], np.zeros(1)
+        if not self.drawn.all():
+            rows, offsets = (direction @ self.linear)[self.drawn], (shift @ direction)[self.drawn]
         while True:
             spread = radius * np.linalg.norm(rows, axis=1)
             most = offsets + spread

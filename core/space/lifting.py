@@ -34,7 +34,7 @@ def lift(ifs: IFS) -> SpaceIFS:
     maps = np.zeros((ifs.count, 3, 4))
     maps[:, :2, :2], maps[:, :2, 3] = ifs.linear, ifs.translation
     maps[:, 2, 2] = np.sign(area) * np.sqrt(np.abs(area))
-    return SpaceIFS(maps, ifs.weights, ifs.name)
+    return SpaceIFS(maps, ifs.weights, ifs.name, opacity=ifs.opacity)
 
 
 def in_one_space(initial: IFS, final: IFS) -> tuple[IFS, IFS]:

@@ -7,7 +7,7 @@ from ..pairs import exchange_maps
 from ..property_options import window_held
 from .poll import ENDS, editable_morph, shape_of
 
-STORED = ("name", "matrix", "matrix_in_space", "weight", "color", "winding", "transitions")
+STORED = ("name", "matrix", "matrix_in_space", "weight", "opacity", "color", "winding", "transitions")
 """What a map stores; the rest of its properties follows."""
 
 

@@ -92,7 +92,8 @@ def signature(owner, settings, morph, frame) -> tuple:
     if frame.DIMENSION == 3:
         raise IFSError(NO_PICTURE)
     chances = None if frame.transitions is None else frame.transitions.tobytes()
-    shape = frame.maps.tobytes(), frame.weights.tobytes(), chances, _norms(owner, morph, frame).tobytes()
+    measure = frame.weights.tobytes(), frame.opacity.tobytes(), chances
+    shape = frame.maps.tobytes(), *measure, _norms(owner, morph, frame).tobytes()
     look = output.mode, output.antialiasing, _colors(owner, settings).tobytes()
     tones = (output.curve, output.exposure, output.gamma) if output.mode == "DENSITY" else ()
     return canvas + shape + look + tones

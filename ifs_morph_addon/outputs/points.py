@@ -121,7 +121,8 @@ def signature(owner, settings, morph, frame) -> tuple:
     output = settings.output
     chances = address_transitions(morph)
     chances = None if chances is None else chances.tobytes()
-    still = output.point_count, morph.weights_at(0.5).tobytes(), chances, _colors(settings).tobytes()
+    shares = morph.weights_at(0.5).tobytes(), morph.opacity_at(0.5).tobytes(), frame.drawn.tobytes()
+    still = output.point_count, *shares, chances, _colors(settings).tobytes()
     return frame.maps.tobytes(), (*output.window, *output.depth), output.point_radius, still
 
 
@@ -135,9 +136,14 @@ def draw(owner, settings, morph, frame, for_render: bool, before: tuple):
     output = settings.output
     if not np.isfinite((*output.window, *output.depth)).all():
         raise IFSError("The window holds NaN; fit it again, or give it four numbers.")
-    weights, chances = morph.weights_at(0.5), address_transitions(morph)
-    places = origin_and_unit(output.window, output.depth)
-    points = point_cloud(frame, output.point_count, weights, placing=places, address_transitions=chances)
+    points = point_cloud(
+        frame,
+        output.point_count,
+        morph.weights_at(0.5),
+        placing=origin_and_unit(output.window, output.depth),
+        address_transitions=address_transitions(morph),
+        address_opacity=morph.opacity_at(0.5),
+    )
     count = len(points.position)
     if len(mesh.vertices) != count or len(mesh.edges):
         mesh.clear_geometry()

@@ -127,6 +127,7 @@ class _ShapePanel(SidebarPanel):
         column.use_property_split = True
         column.use_property_decorate = False
         column.prop(item, "weight")
+        column.prop(item, "opacity")
         layout.label(text="Matrix:")
         draw_matrix(layout, item, "matrix_in_space", 4)
 
@@ -140,6 +141,7 @@ class _ShapePanel(SidebarPanel):
         column.prop(item, "scale")
         column.prop(item, "shear")
         column.prop(item, "weight")
+        column.prop(item, "opacity")
         layout.label(text="Matrix:")
         draw_matrix(layout, item, "matrix", 3)
 

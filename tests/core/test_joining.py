@@ -76,7 +76,7 @@ def test_nothing_jumps_at_the_ends_or_between(count, density, seed):
         points, spacing = allowed_points(here, 3000)
         others, other_spacing = allowed_points(there, 3000)
         assert hausdorff(points, others) <= spacing + other_spacing + 1e-3
-    assert np.array_equal(morph.follows_at(0.0), morph.follows_at(0.5))
+    assert np.array_equal(morph.allowed_at(0.0), morph.allowed_at(0.5))
 
 
 def test_what_few_maps_differ_in_takes_few_parts():

@@ -63,9 +63,9 @@ def test_any_number_of_frames_and_threads(frames):
 
 def test_family_is_the_morph_frame_by_frame():
     frames = np.random.default_rng(0).uniform(0, 1, (9, 3))
-    linear, translation, follows = family(FERN, frames)
-    assert follows.shape == (9, 4, 4)
-    assert follows.all()
+    linear, translation, allowed = family(FERN, frames)
+    assert allowed.shape == (9, 5, 4)
+    assert allowed.all()
     assert linear.shape == (9, 4, 4)
     assert translation.shape == (9, 4, 2)
     for k, frame in enumerate(frames):

@@ -266,7 +266,7 @@ def test_files_cut_short(sample):
 def test_groups_of_symmetries(kind, size):
     maps = symmetry_maps(kind)
     frequencies = np.full(len(maps), 0.5 / len(maps))
-    group, shares = unfold(maps, frequencies)
+    group, shares, _ = unfold(maps, frequencies, np.ones(len(maps)))
     assert len(group) == size
     assert np.isclose(shares.sum(), 2), "the mean number of turns after a map is that of a geometric law"
     # The measure of a chain of random turns, by walking along it.
@@ -284,7 +284,7 @@ def test_groups_of_symmetries(kind, size):
 
 def test_groups_that_are_too_large():
     turn = np.array([[0.6, -0.8], [0.8, 0.6]])
-    assert unfold(turn[None], np.array([0.5])) is None
+    assert unfold(turn[None], np.array([0.5]), np.ones(1)) is None
 
 
 def test_recurrent_shapes_are_written_and_read_back_equal(tmp_path):
