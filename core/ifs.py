@@ -278,7 +278,7 @@ def _checked_opacity(opacity: np.ndarray, count: int, called: str) -> np.ndarray
     opacity = _numbers(opacity, f"{called} opacities")
     if opacity.shape != (count,):
         raise IFSError(f"{called} has {count} maps but opacities of shape {opacity.shape}; give one a map.")
-    _require_finite(opacity, f"{called} opacity of map", "it")
+    _require_finite(opacity, f"{called} opacity of map", "the opacity")
     for i in np.flatnonzero((opacity < 0) | (opacity > 1)):
         raise IFSError(f"{called} opacity of map {i + 1} is {opacity[i]:g}; use 0 to 1.")
     if not opacity.any():

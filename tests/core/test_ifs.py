@@ -211,6 +211,39 @@ def test_the_words_of_a_contractive_ifs_shrink(seed, count):
     assert np.isfinite(points).all()
 
 
+# --- what is drawn of it
+
+
+def test_all_is_drawn_by_default():
+    ifs = SHAPES["gasket"]
+    assert ifs.opacity.tolist() == [1, 1, 1]
+    assert ifs.drawn.all()
+    assert ifs.allowed.all()
+    assert not ifs.opacity.flags.writeable
+
+
+def test_hidden_maps_may_come_anywhere_but_first():
+    ifs = IFS(SHAPES["gasket"].maps, opacity=[0, 0.5, 1], transitions=[[1, 1, 0], [1, 1, 1], [0, 1, 1]])
+    assert ifs.drawn.tolist() == [False, True, True]
+    assert ifs.allowed.tolist() == [*ifs.follows.tolist(), [False, True, True]]
+
+
+@pytest.mark.parametrize(
+    ("opacity", "said"),
+    [
+        ([1, 1], "3 maps but opacities of shape"),
+        ([1, 2, 1], "opacity of map 2 is 2; use 0 to 1"),
+        ([1, 1, -0.5], "opacity of map 3 is -0.5; use 0 to 1"),
+        ([0, 0, 0], "all its maps are hidden; give at least one an opacity above 0"),
+        ([1, np.nan, 1], "opacity of map 2 holds NaN or infinity"),
+        (["a", 1, 1], "not an array of numbers"),
+    ],
+)
+def test_opacities_that_make_no_sense_are_named(opacity, said):
+    with pytest.raises(IFSError, match=said):
+        IFS(SHAPES["gasket"].maps, opacity=opacity)
+
+
 # --- where the attractor lies
 
 

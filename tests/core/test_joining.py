@@ -1,5 +1,7 @@
 """Morphs between recurrent shapes of different graphs: the ends are what they were, and nothing jumps."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -107,6 +109,16 @@ def test_parts_turn_as_their_map_is_wound():
     morph = Morph(SQUARE, less, winding=[1, 0, 0, 0])
     assert morph.winding.tolist() == [1, 0, 0, 0, 1]
     assert morph.part_of.tolist() == [0, 1, 2, 3, 0]
+
+
+def test_parts_are_as_visible_as_their_map():
+    less = recurrent("square", np.ones((4, 4)) - np.diag([1, 0, 0, 0]))
+    initial, final, part_of = over_one_graph(
+        replace(SQUARE, opacity=[0.5, 1, 0, 1]), replace(less, opacity=[0, 1, 1, 0.25])
+    )
+    assert part_of.tolist() == [0, 1, 2, 3, 0]
+    assert initial.opacity.tolist() == [0.5, 1, 0, 1, 0.5]
+    assert final.opacity.tolist() == [0, 1, 1, 0.25, 0]
 
 
 @pytest.mark.parametrize("method", ["straight", "planned"])

@@ -381,3 +381,22 @@ def test_a_place_with_no_offsets_is_the_common_one():
     common = morph.at(0.3, 0.6, 0.1).maps
     for place in ([0.3, 0.6, 0.1], [0.3, 0.6, 0.1, 0, 0, 0, 0, 0, 0]):
         assert np.array_equal(morph.at(*spread(place, 3)).maps, common)
+
+
+# --- opacity
+
+
+def test_opacities_go_from_end_to_end_and_stay_there():
+    shape = SHAPES["terdragon"]
+    ends = [IFS(shape.maps, opacity=opacity) for opacity in ([0, 1, 0.2], [1, 1, 0.2])]
+    morph = Morph(*ends)
+    for u, first in ((-1, 0), (0, 0), (0.25, 0.25), (0.7, 0.7), (1, 1), (2, 1)):
+        np.testing.assert_allclose(morph.at(u, 0.5).opacity, [first, 1, 0.2], atol=1e-15)
+        # What is not to change does not, to the bit.
+        assert morph.at(u, 0.5).opacity[1:].tolist() == [1, 0.2]
+    u = np.array([0.25, -1, 0.5])
+    np.testing.assert_allclose(morph.at(u, u).opacity, [0.25, 1, 0.2])
+    allowed = morph.allowed_at(np.array([[-0.5], [0.0], [0.5]]))
+    assert allowed.shape == (3, 4, 3)
+    assert allowed[:, :3].all()
+    assert allowed[:, 3].tolist() == [[False, True, True]] * 2 + [[True] * 3]

@@ -6,6 +6,7 @@ Needs flam3-render (on Debian: ``apt install flam3-utils``); skipped, with that 
 import os
 import shutil
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,8 +39,15 @@ FLAMES = {
     "turns and mirror": FLAG + '<symmetry kind="-4"/>',
     "turns as maps": FLAG + '<xform weight="0.5" symmetry="1" linear="1" coefs="0.5 0.866025 -0.866025 0.5 0 0"/>',
     "chaos": FLAG.replace("/>", ' chaos="0 1 2"/>', 1).replace('0.2"/>', '0.2" chaos="2 0.5 1"/>', 1),
+    "hidden": FLAG.replace("/>", ' opacity="0"/>', 1),
+    "hidden by plotmode": FLAG.replace("/>", ' plotmode="off"/>', 2),
+    "hidden and turns": FLAG.replace("/>", ' opacity="0"/>', 1) + '<symmetry kind="3"/>',
+    "hidden turns": FLAG + '<xform weight="0.5" symmetry="1" opacity="0" linear="1" coefs="-1 0 0 -1 0 0"/>',
+    "hidden and chaos": FLAG.replace("/>", ' chaos="0 1 2"/>', 1).replace('0.2"/>', '0.2" opacity="0"/>', 1),
     "no weight": FLAG + '<xform weight="0" linear="1" coefs="0.5 0 0 0.5 2 2"/>',
 }
+
+HIDDEN = [kind for kind in FLAMES if "hidden" in kind]
 
 
 @pytest.fixture(scope="module")
@@ -98,6 +106,16 @@ def test_shape_covers_the_picture_of_flam3(draw, kind):
     assert_same_pixels(draw(flame), ifs)
 
 
+@pytest.mark.parametrize("kind", HIDDEN)
+def test_what_is_hidden_would_be_missed(draw, kind):
+    flame = flame_of(FLAMES[kind])
+    (ifs,) = read_text(flame).shapes.values()
+    assert not (ifs.opacity == 1).all()
+    if kind != "hidden and turns":  # There the turned copies are drawn, and with them all.
+        with pytest.raises(AssertionError):
+            assert_same_pixels(draw(flame), replace(ifs, opacity=None))
+
+
 @pytest.mark.parametrize("mistake", ["mirrored", "transposed"])
 def test_a_mistaken_reading_would_be_noticed(draw, mistake):
     flame = flame_of(FLAMES["coefs"])
@@ -111,7 +129,7 @@ def test_a_mistaken_reading_would_be_noticed(draw, mistake):
         assert_same_pixels(draw(flame), type(ifs)(maps))
 
 
-@pytest.mark.parametrize("kind", ["coefs", "turns", "turns and mirror", "turns as maps", "chaos"])
+@pytest.mark.parametrize("kind", ["coefs", "turns", "turns and mirror", "turns as maps", "chaos", *HIDDEN])
 def test_measure_is_that_of_flam3(draw, kind):
     """The brightness that flam3 gives to each part of the picture, against the measure of the maps that were read."""
     flame = flame_of(FLAMES[kind]).replace('brightness="100"', 'brightness="4"')

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.affine import compose, transform
-from core.formats import FormatError, read_text, write_text
+from core.formats import FormatError, read_shapes, read_text, write_text
 from core.formats.entry import Entry
 
 APOPHYSIS = (
@@ -101,8 +101,9 @@ def test_fractorium():
     np.testing.assert_array_equal(entry.transitions, [[1, 1], [1, 0.25]])
     np.testing.assert_array_equal(entry.opacities, [1, 0])
     np.testing.assert_array_equal(entry.palette, [[255, 0, 0], [0, 0, 128]])
-    assert found.problems == ("“tiles”: map 2 is hidden in the flame (opacity 0) and shown here.",)
+    assert found.problems == ()
     np.testing.assert_array_equal(found.shapes["tiles"].transitions, [[1, 1], [1, 0.25]])
+    np.testing.assert_array_equal(found.shapes["tiles"].opacity, [1, 0])
 
 
 def test_final_transform_is_applied_to_the_shape():
@@ -205,11 +206,9 @@ def test_every_map_that_is_not_affine_is_named():
     ("text", "said"),
     [
         (flame(HALF, more='post_symmetry_type="POINT"'), "post symmetry"),
-        (flame(HALF, more='name="a" soloxform="1"').replace("</", f"<xform {MOVED}/></"), "map 1 is hidden"),
         (flame(HALF).replace("</", '<symmetry kind="0"/></'), "drawn by lot"),
         (flame(HALF).replace("/>", '><motion motion_frequency="1"/></xform>'), "its motion is left out"),
         (flame(HALF).replace("</", "<palette>no</palette></"), "its palette cannot be read"),
-        (flame(HALF, 'weight="1" linear="1" plotmode="off"'), "map 2 is hidden"),
         (flame(HALF, 'weight="0" linear="1"'), "map 2: it has no weight"),
     ],
 )
@@ -217,6 +216,54 @@ def test_what_a_shape_does_not_show_is_said(text, said):
     found = read_text(text)
     assert len(found.entries) == len(found.problems) == 1
     assert said in found.problems[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "opacity"),
+    [
+        (flame(HALF, MOVED + ' opacity="0"'), [1, 0]),
+        (flame(HALF + ' opacity="0.25"', MOVED), [0.25, 1]),
+        (flame(HALF, MOVED + ' opacity="-1"'), [1, 0]),
+        (flame(HALF, MOVED + ' opacity="3"'), [1, 1]),
+        (flame(HALF, MOVED + ' plotmode="off"'), [1, 0]),
+        (flame(HALF, MOVED + ' plotmode="ON"'), [1, 1]),
+        (flame(HALF, MOVED, HALF, more='soloxform="1"'), [0, 1, 0]),
+        (
+            flame('weight="0" linear="1"', HALF + ' opacity="0"', MOVED).replace(
+                '"0" linear', '"0" opacity="0" linear'
+            ),
+            [0, 1],
+        ),
+    ],
+)
+def test_maps_are_as_visible_as_in_the_flame(text, opacity):
+    found = read_text(text)
+    (ifs,) = found.shapes.values()
+    assert ifs.opacity.tolist() == opacity
+    assert not any("hidden" in problem or "opacity" in problem for problem in found.problems)
+
+
+def test_a_flame_that_hides_all_its_maps_is_no_shape(tmp_path):
+    path = tmp_path / "dark.flame"
+    path.write_text(flame(HALF + ' opacity="0"'))
+    with pytest.raises(FormatError, match="“a”: all its maps are hidden"):
+        read_shapes(path)
+
+
+def test_turns_show_what_is_hidden_before_them():
+    """Points of a hidden map are drawn once a turn is applied to them, the turns all the way round included."""
+    entry = one(flame(HALF, MOVED + ' opacity="0"').replace("</", '<symmetry kind="2"/></'))
+    turned = np.sign(entry.maps[:, 0, 0]) < 0
+    hidden = entry.maps[:, 0, 2] != 0
+    assert (turned.sum(), hidden.sum()) == (2, 2)
+    assert entry.opacities[~hidden].tolist() == [1, 1]
+    # A third of all points is turned: a third of these again, and so on, where every other number of turns is none.
+    assert entry.opacities[hidden & turned] == pytest.approx(1)
+    assert entry.opacities[hidden & ~turned] == pytest.approx(1 / 9)
+    nowhere = one(flame(HALF, MOVED + ' opacity="0"', TURN.replace("0 1 -1 0", "-1 0 0 -1") + ' opacity="0"'))
+    moved = nowhere.maps[:, 0, 2] != 0
+    assert not nowhere.opacities[moved].any()
+    assert nowhere.opacities[~moved] == pytest.approx([8 / 9, 0])
 
 
 def test_a_flame_that_breaks_off_is_not_half_read():

@@ -287,6 +287,16 @@ def test_groups_that_are_too_large():
     assert unfold(turn[None], np.array([0.5]), np.ones(1)) is None
 
 
+def test_opacities_are_written_and_read_back_equal(tmp_path):
+    path = tmp_path / "veiled.flame"
+    square = IFS(SHAPES["square"].maps, opacity=[0, 0.1, 1, 1 / 3])
+    write_shapes(path, {"square": square, "gasket": SHAPES["gasket"]})
+    read = read_shapes(path)
+    assert read["square"].opacity.tobytes() == square.opacity.tobytes()
+    assert read["gasket"].drawn.all()
+    assert path.read_text().count("opacity") == 4
+
+
 def test_recurrent_shapes_are_written_and_read_back_equal(tmp_path):
     path = tmp_path / "chaos.flame"
     square = IFS(SHAPES["square"].maps, [0.1, 0.2, 0.3, 0.4], transitions=1.5 * (1 - np.eye(4)))

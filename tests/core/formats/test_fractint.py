@@ -240,3 +240,10 @@ def test_chaos_has_no_place_in_it():
     entry = Entry("a", np.full((2, 2, 3), 0.25), transitions=np.eye(2))
     with pytest.raises(FormatError, match="chaos"):
         write_text([entry], ".ifs")
+
+
+def test_opacity_has_no_place_in_it():
+    entry = Entry("a", np.full((2, 2, 3), 0.25), opacities=np.array([1.0, 0.5]))
+    with pytest.raises(FormatError, match=r"“a”, map 2: it has an opacity of 0.5, .* write a .flame file"):
+        write_text([entry], ".ifs")
+    write_text([Entry("a", np.full((2, 2, 3), 0.25), opacities=np.ones(2))], ".ifs")

@@ -1,6 +1,7 @@
 """Pairs: a morph made of them has the shapes for ends, and they survive being stored."""
 
 import json
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -16,6 +17,7 @@ from core.matching import Pair, morph_of_pairs, pairs_from_plain, pairs_to_plain
 from core.matching.expansion import split_to
 from core.matching.pairs import IDENTITY, reversed_pairs
 from core.matching.symmetry import symmetries
+from core.raster import TOTAL_MASS, render
 from core.report import check_frames
 from core.shapes import SHAPES
 from core.space.lifting import FLIPS
@@ -74,6 +76,26 @@ def test_doubled_pieces_share_their_weight(initial, final, seed):
     for first in range(SHAPES[initial].count):
         listed = [k for k, pair in enumerate(pairs) if pair.initial[0] == first]
         assert morph.initial.weights[listed].sum() == pytest.approx(SHAPES[initial].weights[first])
+
+
+@chances
+def test_the_ends_show_what_the_shapes_show(initial, final, seed):
+    """However maps are split, doubled and turned, the same pixels are drawn, and as brightly."""
+    random = np.random.default_rng(seed)
+    shapes = []
+    for name in (initial, final):
+        opacity = random.choice([0.0, 0.5, 1.0], SHAPES[name].count)
+        opacity[random.integers(len(opacity))] = 1.0
+        shapes.append(replace(SHAPES[name], opacity=opacity))
+    morph = morph_of_pairs(*shapes, pairs_by_chance(initial, final, seed))
+    for made, shape in ((morph.initial, shapes[0]), (morph.final, shapes[1])):
+        x0, y0, x1, y1 = replace(shape, opacity=None).bounds
+        window = x0 - 0.0123, y0 - 0.0234, x1 + 0.0345, y1 + 0.0456
+        pictures = [render(ifs, (40, 40), window) > 0 for ifs in (made, shape)]
+        # Points lie elsewhere in pieces that are turned, and touch other pixels of the border.
+        assert np.count_nonzero(pictures[0] != pictures[1]) <= 0.1 * np.count_nonzero(pictures[1])
+        masses = [render(ifs, (40, 40), window, "density").sum() / TOTAL_MASS for ifs in (made, shape)]
+        assert masses[0] == pytest.approx(masses[1], abs=1e-9)
 
 
 @chances

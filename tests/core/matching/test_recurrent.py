@@ -1,5 +1,7 @@
 """The match of recurrent shapes: scored as they are drawn, their graphs kept, and no frame in pieces."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -145,3 +147,29 @@ def test_a_symmetry_of_all_is_none_of_what_follows_a_map():
     turned = tuple(map(tuple, symmetries(SHAPES["square"])[1].tolist()))
     with pytest.raises(IFSError, match="recurrent"):
         morph_of_pairs(NEVER_TWICE, NEVER_TWICE, [Pair((k,), (k,), turned) for k in range(4)])
+
+
+# --- hidden maps
+
+
+def test_a_shape_that_hides_maps_is_matched_as_it_is_drawn():
+    """The snowflake without its middle is whole, and so must be what it becomes."""
+    initial = replace(SHAPES["Koch snowflake"], opacity=[0, 1, 1, 1, 1, 1, 1])
+    final = replace(SHAPES["Sierpinski carpet"], opacity=[1, 1, 1, 1, 1, 1, 1, 0])
+    assert isinstance(
+        problem_of(*(End(ifs, symmetries(ifs), [(0,)]) for ifs in (initial, final)), 1 / 300), RecurrentProblem
+    )
+    found = match(initial, final, frames=30, budget=20_000)
+    assert found.report.disconnected == 0
+    for end, shape in ((found.morph.initial, initial), (found.morph.final, final)):
+        letters = [pair.initial[0] if shape is initial else pair.final[0] for pair in found.pairs]
+        assert end.opacity.tolist() == shape.opacity[letters].tolist()
+    for t in np.linspace(0, 1, 30):
+        assert connectedness(found.morph.at(*found.path.at(t))).state == Connectedness.CONNECTED
+
+
+def test_a_shape_that_falls_to_pieces_as_it_is_drawn_is_said_to():
+    broken = replace(SHAPES["Koch curve"], opacity=[1, 0, 1, 1])
+    found = match(broken, SHAPES["Koch curve"], frames=10, budget=5_000)
+    assert found.report.path.path.state[0] == Connectedness.DISCONNECTED
+    assert "The initial shape is not in one piece itself." in found.report.text()

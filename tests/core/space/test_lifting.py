@@ -23,6 +23,10 @@ def test_a_lifted_shape_is_flat_and_the_same(name):
     assert lifted.norms == pytest.approx(SHAPES[name].norms)
 
 
+def test_a_lifted_shape_hides_what_the_shape_does():
+    assert lift(IFS(SHAPES["gasket"].maps, opacity=[0, 1, 0.5])).opacity.tolist() == [0, 1, 0.5]
+
+
 def test_a_flip_turns_over_through_space():
     morph = morph_between(MIRRORED, SHAPES["gasket"], flip="turned")
     assert isinstance(morph, SpaceMorph)
