@@ -75,14 +75,18 @@ def _picked(properties) -> list[Path]:
 
 
 def _read_picked(properties):
-    """Usable entries of all picked files by name, and problems; raises FormatError."""
+    """Usable entries of all picked files by name, and problems, files that cannot be read among them."""
     entries, problems = [], []
     for path in _picked(properties):
         try:
             changed = path.stat().st_mtime_ns
         except (OSError, ValueError):
             changed = 0  # Reading it will say what is wrong.
-        found = _file(str(path), changed)
+        try:
+            found = _file(str(path), changed)
+        except FormatError as error:
+            problems.append(str(error))
+            continue
         entries += found.entries
         problems += found.problems
     return _usable(entries, problems)

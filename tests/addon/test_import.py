@@ -125,6 +125,22 @@ def test_files_dropped_together_are_one_choice(owner, tmp_path, flame):
     assert [item.weight for item in owner.ifs_morph.final.maps] == [0, 0], "left to the areas of the maps"
 
 
+def test_a_dropped_file_that_cannot_be_read_leaves_the_others(owner, tmp_path, capfd):
+    (tmp_path / "levy.ifs").write_text(LEVY)
+    (tmp_path / "empty.ifs").write_text("")
+    (tmp_path / "words.flame").write_text("nothing of the kind")
+    names = ["empty.ifs", "words.flame", "gone.ifs", "levy.ifs"]
+    bpy.ops.ifs_morph.import_shapes(directory=str(tmp_path), files=[{"name": name} for name in names], target="FINAL")
+    assert owner.ifs_morph.final.name == "Levy"
+    said = capfd.readouterr().out
+    for name in names[:3]:
+        assert f"“{name}”" in said
+    files = [{"name": name} for name in names[:3]]
+    said = problems(bpy.ops.ifs_morph.import_shapes, directory=str(tmp_path), files=files, target="FINAL")
+    for name in names[:3]:
+        assert f"“{name}”" in said
+
+
 def test_what_is_wrong_with_a_file_is_said(owner, flame, capfd):
     bpy.ops.ifs_morph.import_shapes(filepath=flame, entry="flat", target="FINAL")
     said = capfd.readouterr().out
