@@ -4,6 +4,7 @@ Properties hold single precision, which could take a map the other way round whe
 symmetries are read as those of the shape that are nearest.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -17,6 +18,9 @@ from ..core.matching.symmetry import symmetries
 
 NEAR = 1e-4
 """Entries of a symmetry, in units of the shape, that differ by less are of the same one. Others are far apart."""
+
+LETTER = re.compile(r"0*[1-9][0-9]{0,8}")
+"""Number of a map, in the text of a word."""
 
 STORED = ("initial", "final", "winding", "locked")
 """What a pair stores beside its symmetries."""
@@ -78,10 +82,16 @@ def _pairs(dimension: int, words, initial: bytes, final: bytes, winding: bytes) 
 
 def word_of(text: str) -> tuple[int, ...]:
     """Word, counted from 0, of the text of it, counted from 1; raises IFSError."""
-    try:
-        return tuple(int(part) - 1 for part in text.split())
-    except ValueError as error:
-        raise IFSError(f"“{text}” is no map: write its number, or several with spaces for a part of it.") from error
+    parts = text.split()
+    if not parts or not all(LETTER.fullmatch(part) for part in parts):
+        raise IFSError(f"“{text}” is no map: write its number, or several with spaces for a part of it.")
+    return tuple(int(part) - 1 for part in parts)
+
+
+def require_word(ifs: IFS, word: tuple[int, ...]) -> None:
+    """Raise IFSError unless a shape has the maps of a word."""
+    if max(word) >= ifs.count:
+        raise IFSError(f"“{text_of(word)}” is no map of a shape that has {ifs.count}.")
 
 
 def text_of(word: tuple[int, ...]) -> str:
@@ -216,7 +226,10 @@ def exchange_maps(matching, end: str, first: int, second: int) -> None:
     """Have pairs go on to name the same maps after two maps of a shape have changed places."""
     places = {first: second, second: first}
     for item in matching.pairs:
-        word = word_of(getattr(item, end))
+        try:
+            word = word_of(getattr(item, end))
+        except IFSError:
+            continue  # It names no map.
         setattr(item, end, text_of(tuple(places.get(letter, letter) for letter in word)))
 
 

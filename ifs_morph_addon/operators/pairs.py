@@ -99,6 +99,7 @@ class IFSMORPH_OT_pair_split(_PairOperator, bpy.types.Operator):
         shape = shapes_of(settings)[self.end == "FINAL"]
         field = self.end.lower()
         word = getattr(listed[active], field)
+        pairs.require_word(shape, word)
         # Where the map is in several pairs, they share the parts.
         sharing = [k for k, pair in enumerate(listed) if getattr(pair, field) == word]
         words = parts(shape, word)

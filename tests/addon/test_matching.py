@@ -402,6 +402,25 @@ def test_splitting_keeps_the_shape(image, extension):
     np.testing.assert_allclose(morph_of(image, extension).at(1, 1).bounds, SHAPES["square"].bounds, atol=1e-3)
 
 
+@pytest.mark.parametrize("end", ["INITIAL", "FINAL"])
+@pytest.mark.parametrize("word", ["9", "1 9", "0", "-1", "1 0", "", "x"])
+def test_map_that_is_not_there_cannot_be_split(image, extension, end, word):
+    set_pairs(image, ("1", "1"), ("2", "2"), ("3", "3"), ("3", "4"))
+    setattr(image.ifs_morph.matching.pairs[0], end.lower(), word)
+    before = listed(image)
+    with pytest.raises(RuntimeError, match="is no map"):
+        bpy.ops.ifs_morph.pair_split(end=end)
+    assert listed(image) == before
+
+
+def test_maps_move_beside_a_pair_that_names_none(image, extension):
+    set_pairs(image, ("1", "abc"), ("2", "9 1"), ("", "3"), ("3", "4"))
+    assert bpy.ops.ifs_morph.map_move(end="FINAL", direction="DOWN") == {"FINISHED"}
+    assert [each[1] for each in listed(image)] == ["abc", "9 2", "3", "4"]
+    assert bpy.ops.ifs_morph.map_move(end="INITIAL", direction="DOWN") == {"FINISHED"}
+    assert [each[0] for each in listed(image)] == ["2", "1", "", "3"]
+
+
 def test_pairs_move_with_the_maps(image, extension):
     set_pairs(image, ("1", "1"), ("2", "2"), ("3 1", "3"), ("3 2", "4"), ("3 3", "4"))
     before = morph_of(image, extension).at(0.4, 0.4).maps
