@@ -279,11 +279,32 @@ def _tabled(flame: _Flame, maps: np.ndarray, rows: list[_Row]) -> Entry:
 
 
 def _used(entry: Entry) -> Entry:
-    """Leave out the maps without weight, which a flame never uses."""
-    used = entry.weights > 0 if entry.weights is not None else np.ones(entry.count, bool)
-    notes = [f"{called(entry.name)}, map {k + 1}: it has no weight and is left out." for k in np.flatnonzero(~used)]
+    """Leave out the maps without weight, and those that no map leads to, which a flame never uses.
+
+    Raises FormatError if there is a map that nothing may follow.
+    """
+    weighted = entry.weights > 0 if entry.weights is not None else np.ones(entry.count, bool)
+    notes = [f"{called(entry.name)}, map {k + 1}: it has no weight and is left out." for k in np.flatnonzero(~weighted)]
+    used = weighted
+    if entry.transitions is not None:
+        used = _reached(entry.transitions > 0, weighted)
+        for k in np.flatnonzero(used if used.any() else weighted):
+            if not entry.transitions[k, weighted].any():
+                raise FormatError(
+                    f"{called(entry.name)}: no map may be applied after map {k + 1}, which chaos forbids."
+                )
+        notes += [
+            f"{called(entry.name)}, map {k + 1}: chaos lets no map lead to it, so it is never drawn and is left out."
+            for k in np.flatnonzero(weighted & ~used)
+        ]
     entry = replace(entry, notes=(*entry.notes, *notes))
     return entry if used.all() else _chosen(entry, np.flatnonzero(used))
+
+
+def _reached(allowed: np.ndarray, maps: np.ndarray) -> np.ndarray:
+    """Which (N,) of some maps are applied again and again: those that some of these may come before."""
+    reached = maps & allowed[maps].any(axis=0)
+    return reached if (reached == maps).all() else _reached(allowed, reached)
 
 
 def _chosen(entry: Entry, indices: np.ndarray) -> Entry:

@@ -203,6 +203,35 @@ def test_every_map_that_is_not_affine_is_named():
 
 
 @pytest.mark.parametrize(
+    ("chaos", "used"),
+    [
+        (["1 1 0", "1 1 0", "1 1 0"], [0, 1]),
+        (["0 1 0", "1 0 0", "1 0 1"], [0, 1, 2]),
+        (["1 1 0", "0 1 0", "1 1 0"], [0, 1]),
+        (["0 1 0", "0 1 0", "1 0 0"], [1]),
+        (["1 0 0", "1 1 0", "0 0 0"], [0, 1]),
+    ],
+)
+def test_maps_that_no_map_leads_to_are_left_out_and_named(chaos, used):
+    """Some of them only once others have been left out."""
+    found = read_text(flame(*[f'{HALF} color="{k / 2}" chaos="{row}"' for k, row in enumerate(chaos)]))
+    assert list(found.shapes) == ["a"]
+    np.testing.assert_array_equal(found.entries[0].colors, np.array(used) / 2)
+    left_out = sorted({0, 1, 2} - set(used))
+    assert len(found.problems) == len(left_out)
+    for k, problem in zip(left_out, found.problems, strict=True):
+        assert problem.startswith(f"“a”, map {k + 1}: chaos lets no map lead to it")
+
+
+@pytest.mark.parametrize("chaos", [["0 1", "0 0"], ["1 1", "0 0"], ["0 0", "0 0"]])
+def test_a_map_that_nothing_may_follow_is_named(chaos):
+    found = read_text(flame(*[f'{HALF} chaos="{row}"' for row in chaos]) + flame(HALF).replace('"a"', '"good"'))
+    assert list(found.shapes) == [entry.name for entry in found.entries] == ["good"]
+    assert len(found.problems) == 1
+    assert "“a”: no map may be applied after map" in found.problems[0]
+
+
+@pytest.mark.parametrize(
     ("text", "said"),
     [
         (flame(HALF, more='post_symmetry_type="POINT"'), "post symmetry"),
