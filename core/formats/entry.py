@@ -21,6 +21,11 @@ LARGEST_NUMBER = 1e100
 LARGEST_COUNT = 1000
 """More maps than that are a mistake, too."""
 
+NO_SHAPES = (
+    "There are no shapes: neither entries “name { a b c d e f p ... }”, as Fractint has them, nor flames, "
+    "<flame> ... </flame>."
+)
+
 
 class FormatError(IFSError):
     """A file of shapes cannot be read or written; the message says what, where and what to do."""
@@ -128,20 +133,23 @@ class Reading:
 
 def reading(entries: Iterable[Entry], problems: Iterable[str]) -> Reading:
     """Put a reading together: give entries of one name a number, and list their notes after the other problems."""
+    entries = with_unique_names(entries)
+    notes = (note for entry in entries for note in entry.notes)
+    return Reading(entries, (*problems, *notes))
+
+
+def with_unique_names(entries: Iterable[Entry]) -> tuple[Entry, ...]:
+    """Give entries whose name another has the first number from 2 that makes it differ from those before."""
     unique: dict[str, Entry] = {}
+    last: dict[str, int] = {}
     for entry in entries:
-        name = unused_name(entry.name, unique)
+        name, number = entry.name, last.get(entry.name, 1)
+        while name in unique:
+            number += 1
+            name = f"{entry.name} {number}"
+        last[entry.name] = number
         unique[name] = replace(entry, name=name)
-    notes = (note for entry in unique.values() for note in entry.notes)
-    return Reading(tuple(unique.values()), (*problems, *notes))
-
-
-def unused_name(name: str, taken: Iterable[str]) -> str:
-    """Return the name, with the first number from 2 that makes it differ from those taken."""
-    unique, number = name, 2
-    while unique in taken:
-        unique, number = f"{name} {number}", number + 1
-    return unique
+    return tuple(unique.values())
 
 
 def called(name: str) -> str:

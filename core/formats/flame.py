@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..affine import compose, invert
-from .entry import LARGEST_COUNT, LARGEST_NUMBER, NUMBER, Entry, FormatError, Reading, called, reading
+from .entry import LARGEST_COUNT, LARGEST_NUMBER, NO_SHAPES, NUMBER, Entry, FormatError, Reading, called, reading
 from .markup import Tag, tags
 from .symmetry import isometry, symmetry_maps, unfold
 from .xform import IDENTITY, Xform
@@ -78,7 +78,7 @@ def read_flames(text: str) -> Reading:
             except FormatError as error:
                 problems += str(error).split("\n")
     if not found:
-        raise FormatError("There are no flames; a flame file has them as <flame> ... </flame>.")
+        raise FormatError(NO_SHAPES)
     return reading(entries, problems)
 
 

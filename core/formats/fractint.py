@@ -14,7 +14,18 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .entry import LARGEST_COUNT, NUMBER, Entry, FormatError, Reading, called, number, reading, require_writable
+from .entry import (
+    LARGEST_COUNT,
+    NO_SHAPES,
+    NUMBER,
+    Entry,
+    FormatError,
+    Reading,
+    called,
+    number,
+    reading,
+    require_writable,
+)
 
 IN_SPACE = re.compile(r"\(\s*3\s*d\s*\)", re.IGNORECASE)
 NAME_COMMENT = re.compile(r'\s*name:\s*(".*")\s*')
@@ -39,6 +50,12 @@ class _Block:
     def place(self) -> str:
         return f"{called(self.name)}, line {self.line}"
 
+    @property
+    def looks_like_maps(self) -> bool:
+        """Whether most of its words are numbers, as not in the braces of other kinds of files."""
+        words = [word for _, row in self.rows for word in row]
+        return 2 * sum(map(bool, map(NUMBER.fullmatch, words))) > len(words)
+
 
 def read_ifs(text: str, name: str = "unnamed") -> Reading:
     """Read all entries of an .ifs file.
@@ -58,7 +75,7 @@ def read_ifs(text: str, name: str = "unnamed") -> Reading:
     Raises
     ------
     FormatError
-        If there is no entry at all.
+        If there is no entry at all, as in files of other kinds.
     """
     entries, problems, found = [], [], False
     if "{" not in text and re.search(r"\d", re.sub(r";.*", "", text)):
@@ -66,13 +83,13 @@ def read_ifs(text: str, name: str = "unnamed") -> Reading:
     for block in _blocks(text, name):
         if block.is_remark:
             continue
-        found = True
+        found = found or block.looks_like_maps
         try:
             entries.append(_entry(block))
         except FormatError as error:
             problems.append(str(error))
     if not found:
-        raise FormatError("There are no entries; a Fractint file has them as “name { a b c d e f p ... }”.")
+        raise FormatError(NO_SHAPES)
     return reading(entries, problems)
 
 

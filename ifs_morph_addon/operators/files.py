@@ -1,6 +1,5 @@
 """Shapes from files and into files, through the file browser, the clipboard, and files dropped onto the viewport."""
 
-from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -8,7 +7,7 @@ import bpy
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ...core.formats import SUFFIXES, Entry, FormatError, read_file, read_text, write_file, write_text
-from ...core.formats.entry import unused_name
+from ...core.formats.entry import with_unique_names
 from ...core.ifs import IFSError
 from .. import preparation
 from ..conversion import NO_PICTURE, fit_window
@@ -50,15 +49,15 @@ def _report(operator, problems) -> None:
 
 def _usable(entries, problems) -> tuple[dict[str, Entry], list[str]]:
     """Entries that can be the shape of an object, by name, and all problems with the others."""
-    usable, problems = {}, list(problems)
+    usable, problems = [], list(problems)
     for entry in entries:
         try:
             require_storable(entry)
         except IFSError as error:
             problems.append(str(error))
         else:
-            usable[unused_name(entry.name, usable)] = entry
-    return usable, problems
+            usable.append(entry)
+    return {entry.name: entry for entry in with_unique_names(usable)}, problems
 
 
 @lru_cache(maxsize=8)
@@ -361,17 +360,15 @@ class IFSMORPH_OT_export_shapes(ExportHelper, bpy.types.Operator):
 
     def _entries(self, context) -> list[Entry]:
         """The chosen shapes, under different names."""
-        owner, taken = context.object, {}
+        owner, entries = context.object, []
         for item, title, _ in WRITTEN:
             if item not in self.shapes:
                 continue
             if item == "FRAME":
-                entry = frame_entry(owner.ifs_morph, f"{owner.name} frame {context.scene.frame_current}")
+                entries.append(frame_entry(owner.ifs_morph, f"{owner.name} frame {context.scene.frame_current}"))
             else:
-                entry = shape_entry(getattr(owner.ifs_morph, item.lower()), title)
-            name = unused_name(entry.name, taken)
-            taken[name] = replace(entry, name=name)
-        return list(taken.values())
+                entries.append(shape_entry(getattr(owner.ifs_morph, item.lower()), title))
+        return list(with_unique_names(entries))
 
     def _suffix(self) -> str:
         return f".{self.format.lower()}"

@@ -159,7 +159,7 @@ def test_a_shape_without_an_attractor_is_loaded_and_said(owner, tmp_path, capfd)
 @pytest.mark.parametrize(
     ("contents", "options", "said"),
     [
-        ("nothing", {}, "There are no entries"),
+        ("nothing", {}, "There are no shapes"),
         (LEVY, {"entry": "Koch"}, "There is no shape “Koch”; there are Levy."),
         (LEVY.replace("}", ""), {}, "ends without a closing brace"),
         (FLAME.replace("linear", "swirl"), {}, "“flat”, map 1: swirl is not a linear variation"),
@@ -240,7 +240,7 @@ def test_paste_one_of_several(owner, clipboard, library):
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("", "There is no text"), ("hello", "There are no entries"), ("a { 1 2 x }", "“x” is not a number")],
+    [("", "There is no text"), ("hello", "There are no shapes"), ("a { 1 2 x }", "“x” is not a number")],
 )
 def test_what_cannot_be_pasted_changes_nothing(owner, clipboard, text, said):
     clipboard[0], before = text, state(owner)

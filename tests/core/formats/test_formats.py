@@ -1,12 +1,14 @@
 """Both formats: what is written reads back equal to the bit, and whatever is read gives shapes or a sentence."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from core.formats import FormatError, read_file, read_shapes, read_text, write_file, write_shapes, write_text
-from core.formats.entry import Entry
+from core.formats.entry import Entry, with_unique_names
 from core.formats.symmetry import symmetry_maps, unfold
 from core.ifs import IFS, IFSError
 from core.shapes import SHAPES
@@ -158,6 +160,47 @@ def test_files_that_cannot_be_read(tmp_path):
     (tmp_path / "empty.ifs").write_bytes(b"")
     with pytest.raises(FormatError, match="There is no text"):
         read_file(tmp_path / "empty.ifs")
+
+
+PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 8
+
+
+@pytest.mark.parametrize(
+    "contents",
+    [
+        b"<flames></flames>",
+        b'<?xml version="1.0"?><foo a="1"/>',
+        b"<!DOCTYPE html><style>p { margin: 0 }</style><script>if (1) { a = [1, 2]; }</script><p>1 2 3",
+        b'{"name": "fern", "maps": [[0.85, 0.04, 1.6], [-0.04, 0.85, 0.0]]}',
+        b"x,y\n1.0,a\n2.0,b",
+        b"{}",
+        PNG,
+    ],
+)
+def test_files_of_other_kinds_have_no_shapes(tmp_path, contents):
+    path = tmp_path / "other.ifs"
+    path.write_bytes(contents)
+    with pytest.raises(FormatError, match=r"“other.ifs”: There are no shapes: neither .* Fractint .* nor flames"):
+        read_file(path)
+
+
+@both
+def test_entries_of_one_name_take_no_longer_than_others(suffix):
+    """Numbers are not looked for from the start each time."""
+    tried = []
+
+    class Name(str):
+        def __format__(self, form):
+            tried.append(self)
+            return str(self)
+
+    entry = Entry(Name("a"), np.full((1, 2, 3), 0.25))
+    named = with_unique_names([entry, replace(entry, name="a 3"), *[entry] * 500, replace(entry, name="a 2")])
+    assert [each.name for each in named][:5] == ["a", "a 3", "a 2", "a 4", "a 5"]
+    assert [each.name for each in named][-2:] == ["a 502", "a 2 2"]
+    assert len(tried) <= 501
+    text = write_text([replace(entry, name="a")], suffix)
+    assert [each.name for each in read_text(text * 3).entries] == ["a", "a 2", "a 3"]
 
 
 def test_shapes_of_a_file_without_any_say_why(tmp_path):

@@ -179,7 +179,7 @@ def test_broken_entries_are_named_and_the_others_load(broken, said):
 
 
 def test_nothing_but_words():
-    with pytest.raises(FormatError, match="There are no entries"):
+    with pytest.raises(FormatError, match="There are no shapes"):
         read_text("once upon a time")
 
 
