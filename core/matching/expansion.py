@@ -31,6 +31,13 @@ def is_cover(ifs: IFS, words: list[Word]) -> bool:
     return different | prefixes == {()}.union(*(parts(ifs, prefix) for prefix in prefixes)) and not prefixes & different
 
 
+def uncovered(ifs: IFS, words: list[Word]) -> list[Word]:
+    """Words that are missing among some, the fewest that have all of the rest."""
+    different = set(words)
+    prefixes = {word[:length] for word in different for length in range(len(word))} | {()}
+    return sorted(set().union(*(parts(ifs, prefix) for prefix in prefixes)) - different - prefixes)
+
+
 def is_closed(ifs: IFS, words: list[Word]) -> bool:
     """Whether each word may follow some word, as always in a plain IFS; else the words make up no recurrent IFS."""
     return bool(ifs.follows[np.ix_([word[-1] for word in words], [word[0] for word in words])].any(axis=0).all())

@@ -14,10 +14,13 @@ from ..ifs import IFS, IFSError
 from ..joining import Word, word_map
 from ..morph import Morph
 from ..space.lifting import in_one_space, morph_between
-from .expansion import is_closed, is_cover, word_weight
+from .expansion import is_closed, is_cover, uncovered, word_weight
 
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 """The symmetry that every shape has; it stands for that of space as well."""
+
+MISSING_NAMED = 3
+"""Words of a shape that are in no pair, of those that a sentence names."""
 
 Symmetry = tuple[tuple[float, ...], ...]
 """Rows of a map: two of three numbers, in space three of four."""
@@ -144,11 +147,13 @@ def _end(ifs: IFS, listed: list[tuple[Word, Symmetry | None]], name: str) -> IFS
     words = [word for word, _ in listed]
     letters = [letter for word in words for letter in word]
     if not words or min(map(len, words)) == 0 or min(letters) < 0 or max(letters) >= ifs.count:
-        raise IFSError(f"A pair names a map that the {name} shape does not have; it has {ifs.count}. Match again.")
-    if not is_cover(ifs, words):
+        wrong = (k for k, word in enumerate(words, 1) if not word or min(word) < 0 or max(word) >= ifs.count)
         raise IFSError(
-            f"The pairs do not make up the whole {name} shape; match again, or add the maps that are missing."
+            f"Pair {next(wrong, 1)} names a map that the {name} shape does not have; it has {ifs.count}. "
+            "Write another, or match again."
         )
+    if not is_cover(ifs, words):
+        raise IFSError(_cover_problem(ifs, words, name))
     if not is_closed(ifs, words):
         raise IFSError(f"The {name} shape is recurrent, and no map leads to some of these pieces; split fewer maps.")
     maps = np.array([word_map(ifs, word) for word in words])
@@ -163,6 +168,33 @@ def _end(ifs: IFS, listed: list[tuple[Word, Symmetry | None]], name: str) -> IFS
     # The piece of a word lies in the attractorlet of its first letter, the map that is applied last.
     opacity = ifs.opacity[[word[0] for word in words]]
     return type(ifs)(compose(maps, gauges), weights, ifs.name, _transitions(ifs, words), opacity)
+
+
+def _cover_problem(ifs: IFS, words: list[Word], name: str) -> str:
+    """Say what keeps words from being all of a shape, none of it twice."""
+    for k, word in enumerate(words, 1):
+        for i, j in pairwise(word):
+            if not ifs.follows[i, j]:
+                return (
+                    f"Pair {k} names {_quoted(word)}, but map {i + 1} of the {name} shape may not be applied after "
+                    f"map {j + 1}, so there is no such part; write another, or match again."
+                )
+    for k, word in enumerate(words):
+        part = next((j for j, other in enumerate(words) if word == other[: len(word)] != other), None)
+        if part is not None:
+            return (
+                f"Pair {k + 1} has all of map {_quoted(word)} of the {name} shape, and pair {part + 1} a part of it; "
+                "split the one, join the parts of the other, or match again."
+            )
+    missing = [_quoted(word) for word in uncovered(ifs, words)]
+    return (
+        f"The pairs do not make up the whole {name} shape, since none has {', '.join(missing[:MISSING_NAMED])}"
+        f"{' and others' if len(missing) > MISSING_NAMED else ''}; add what is missing, or match again."
+    )
+
+
+def _quoted(word: Word) -> str:
+    return f"“{' '.join(str(letter + 1) for letter in word)}”"
 
 
 def _transitions(ifs: IFS, words: list[Word]) -> np.ndarray | None:

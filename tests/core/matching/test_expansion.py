@@ -5,7 +5,7 @@ from scipy.spatial import cKDTree
 
 from core.ifs import IFS
 from core.joining import word_map
-from core.matching.expansion import is_cover, split_all, split_to, word_weight
+from core.matching.expansion import is_cover, split_all, split_to, uncovered, word_weight
 from core.shapes import SHAPES
 from tests.core.reference import at, dense
 
@@ -51,3 +51,18 @@ def test_the_last_letter_is_applied_first():
 )
 def test_a_cover_has_every_piece(words, whole):
     assert is_cover(SHAPES["spiral"], words) == whole
+
+
+@pytest.mark.parametrize(
+    ("words", "missing"),
+    [
+        ([(0,), (1,)], []),
+        ([], [(0,), (1,)]),
+        ([(0,), (0,)], [(1,)]),
+        ([(0, 1)], [(0, 0), (1,)]),
+        ([(0, 1, 1), (1,)], [(0, 0), (0, 1, 0)]),
+    ],
+)
+def test_what_is_missing_completes_a_cover(words, missing):
+    assert uncovered(SHAPES["spiral"], words) == missing
+    assert is_cover(SHAPES["spiral"], words + missing)

@@ -132,6 +132,31 @@ def test_pairs_that_fit_no_more_say_so(pairs):
         morph_of_pairs(SHAPES["gasket"], SHAPES["terdragon"], pairs)
 
 
+NEVER_AFTER = IFS(SHAPES["gasket"].maps, transitions=[[1, 1, 1], [1, 1, 1], [1, 0, 1]])
+"""Map 2 is never applied after map 3."""
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([(0,), (1,), (4,), (2,)], "Pair 3 names a map that the initial shape does not have; it has 3"),
+        ([(0,), (1,), (2,), (-1, 0)], "Pair 4 names a map"),
+        ([(0,), (1,)], "since none has “3”; add"),
+        ([(0,), (1,), (2, 0)], "since none has “3 1”, “3 3”; add"),
+        ([(2, 2)], "since none has “1”, “2”, “3 1”; add"),
+        ([(0, 0, 0)], "since none has “1 1 2”, “1 1 3”, “1 2” and others; add"),
+        ([(0,), (1,), (2, 1), (2, 0), (2, 2), (2,)], "Pair 6 has all of map “3” of the initial shape, and pair 3 a"),
+        ([(0,), (2,), (1, 0), (1, 1), (1, 2)], "Pair 5 names “2 3”, but map 2 of the initial shape may not be applied"),
+    ],
+)
+def test_what_does_not_fit_is_named(words, said):
+    with pytest.raises(IFSError, match=said):
+        morph_of_pairs(NEVER_AFTER, SHAPES["square"], [Pair(word, (k % 4,)) for k, word in enumerate(words)])
+    # The same at the other end.
+    with pytest.raises(IFSError, match=said.replace("initial", "final")):
+        morph_of_pairs(SHAPES["gasket"], NEVER_AFTER, [Pair((k % 3,), word) for k, word in enumerate(words * 3)])
+
+
 @pytest.mark.parametrize("flip", FLIPS)
 def test_a_pair_that_flips_turns_over_or_is_flattened(flip):
     """The gasket through one mirroring of it, for one map: that one must flip."""
