@@ -195,13 +195,13 @@ def current_pairs(settings) -> tuple[Pair, ...]:
 
 
 def pairs_problem(settings) -> str:
-    """What is wrong with an object's pairs, in one sentence; empty if nothing is."""
+    """What is wrong with an object's pairs, in a few sentences; empty if nothing is."""
     try:
         initial, final = shapes_of(settings)
     except IFSError:
         return ""  # Said of the shapes.
-    fits = not has_pairs(settings) or pairs.fitted(initial, final, settings.matching)
-    return "" if fits else pairs.OUTDATED
+    problem = pairs.problem(initial, final, settings.matching) if has_pairs(settings) else ""
+    return f"{pairs.UNFIT} {problem}" if problem else ""
 
 
 def state_sentence(settings) -> str:

@@ -39,7 +39,7 @@ SIGNS = {
 }
 """Of symmetries, where there is room for a sign only."""
 
-OUTDATED = "The pairs no longer fit the maps, so map k becomes map k for now: Match Pairs again, or Clear Pairs."
+UNFIT = "The pairs do not fit the maps, so map k becomes map k for now."
 
 
 def stored(matching) -> tuple[Pair, ...]:
@@ -72,12 +72,15 @@ def no_symmetry(dimension: int) -> tuple:
 def _pairs(dimension: int, words, initial: bytes, final: bytes, winding: bytes) -> tuple[Pair, ...]:
     shape = -1, dimension, dimension + 1
     symmetries = [np.frombuffer(each, np.float32).reshape(shape).tolist() for each in (initial, final)]
-    return tuple(
-        Pair(word_of(first), word_of(last), _rows(before), _rows(after), turns)
-        for (first, last), before, after, turns in zip(
-            words, *symmetries, np.frombuffer(winding, np.int32).tolist(), strict=True
-        )
-    )
+    listed = []
+    for (first, last), before, after, turns in zip(
+        words, *symmetries, np.frombuffer(winding, np.int32).tolist(), strict=True
+    ):
+        try:
+            listed.append(Pair(word_of(first), word_of(last), _rows(before), _rows(after), turns))
+        except IFSError as error:
+            raise IFSError(f"Pair {len(listed) + 1}: {error}") from None
+    return tuple(listed)
 
 
 def word_of(text: str) -> tuple[int, ...]:
@@ -123,40 +126,46 @@ def line(item) -> str:
 
 def fitted(initial: IFS, final: IFS, matching) -> tuple[Pair, ...] | None:
     """Pairs that are stored for two shapes, their symmetries to the last digit; None if they do not fit them."""
-    return _fitted(initial, final, plain(matching))
+    return _fitted(initial, final, plain(matching))[0]
+
+
+def problem(initial: IFS, final: IFS, matching) -> str:
+    """Which stored pair does not fit two shapes, and why, in one sentence; empty if all fit."""
+    return _fitted(initial, final, plain(matching))[1]
 
 
 @lru_cache(maxsize=16)
-def _fitted(initial: IFS, final: IFS, stored_pairs: tuple) -> tuple[Pair, ...] | None:
+def _fitted(initial: IFS, final: IFS, stored_pairs: tuple) -> tuple[tuple[Pair, ...] | None, str]:
     try:
         pairs = tuple(
             replace(
                 pair,
-                initial_symmetry=_exact(pair.initial_symmetry, initial),
-                final_symmetry=_exact(pair.final_symmetry, final),
+                initial_symmetry=_exact(pair.initial_symmetry, initial, f"Pair {k} turns its initial map"),
+                final_symmetry=_exact(pair.final_symmetry, final, f"Pair {k} turns its final map"),
             )
-            for pair in _pairs(*stored_pairs)
+            for k, pair in enumerate(_pairs(*stored_pairs), 1)
         )
         morph_of_pairs(initial, final, pairs, "elementwise")
-    except IFSError:
-        return None
-    return pairs
+    except IFSError as error:
+        return None, str(error)
+    return pairs, ""
 
 
-def _exact(symmetry, ifs: IFS):
-    """Return the symmetry of a shape that is nearest; raises IFSError if none is near."""
+def _exact(symmetry, ifs: IFS, turned: str):
+    """Return the symmetry of a shape that is nearest; raises IFSError, which begins with `turned`, if none is near."""
     if symmetry == no_symmetry(ifs.DIMENSION):
         return symmetry
-    return _rows(symmetries_of(ifs)[_index(symmetry, ifs)].tolist())
+    index = _index(symmetry, ifs)
+    if index is None:
+        raise IFSError(f"{turned} by what is no symmetry of the shape any more; choose its next one, or match again.")
+    return _rows(symmetries_of(ifs)[index].tolist())
 
 
-def _index(symmetry, ifs: IFS) -> int:
+def _index(symmetry, ifs: IFS) -> int | None:
     known, given = symmetries_of(ifs), as_map(symmetry, ifs)
     scale = np.append(np.ones(ifs.DIMENSION), max(ifs.enclosing_disc[1], np.abs(given[:, -1]).max(), 1e-300))
     apart = np.abs((known - given) / scale).max(axis=(1, 2))
-    if not apart.min() < NEAR:
-        raise IFSError(OUTDATED)
-    return int(np.argmin(apart))
+    return int(np.argmin(apart)) if apart.min() < NEAR else None
 
 
 def next_symmetry(ifs: IFS, symmetry) -> tuple:
@@ -170,9 +179,8 @@ def next_symmetry(ifs: IFS, symmetry) -> tuple:
     known = symmetries_of(ifs)
     if len(known) == 1 and symmetry == no_symmetry(ifs.DIMENSION):
         raise IFSError("This shape has no symmetries: no turn or mirroring takes it to itself.")
-    try:
-        index = _index(symmetry, ifs)
-    except IFSError:
+    index = _index(symmetry, ifs)
+    if index is None:
         index = -1  # What is no symmetry any more gives way to the identity.
     return _rows(known[(index + 1) % len(known)].tolist())
 

@@ -41,7 +41,8 @@ class _Match(LongTask):
         if any(item.locked for item in settings.matching.pairs):
             fitted = pairs.fitted(initial, final, settings.matching)
             if fitted is None:
-                raise IFSError("Locked pairs no longer fit the maps; unlock them, or Clear Pairs.")
+                problem = pairs.problem(initial, final, settings.matching)
+                raise IFSError(f"Locked pairs do not fit the maps; unlock them, or Clear Pairs. {problem}")
             locked = tuple(pair for pair, item in zip(fitted, settings.matching.pairs, strict=True) if item.locked)
         best = yield from match_steps(
             initial,
