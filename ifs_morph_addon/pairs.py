@@ -6,6 +6,7 @@ symmetries are read as those of the shape that are nearest.
 
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from ..core.ifs import IFS, IFSError
 from ..core.matching import Pair, morph_of_pairs, symmetry_text
+from ..core.matching.expansion import uncovered
 from ..core.matching.pairs import IDENTITY, as_map
 from ..core.matching.symmetry import symmetries
 
@@ -228,6 +230,43 @@ def write(matching, pairs: Sequence[Pair], locked: Sequence[bool]) -> None:
             values[name] = no_symmetry(dimension) if symmetry in (None, IDENTITY) else symmetry
         _fill(item, {**values, "winding": pair.winding or 0, "locked": lock})
     matching.active_index = max(0, min(matching.active_index, len(pairs) - 1))
+
+
+def append(matching, initial: IFS, final: IFS) -> None:
+    """Add a pair of what is in none yet, and make it the active one; an end that lacks nothing is the active pair's."""
+    like = _values(matching.pairs[max(0, min(matching.active_index, len(matching.pairs) - 1))])
+    values = {**like, "locked": False}
+    for k, (end, ifs) in enumerate((("initial", initial), ("final", final))):
+        missing = uncovered(ifs, _words(matching, end, ifs.count))
+        if missing:
+            values |= {end: text_of(missing[0]), "winding": 0}
+            values |= {names[k]: no_symmetry(dimension) for dimension, names in SYMMETRIES.items()}
+    _fill(matching.pairs.add(), values)
+    matching.active_index = len(matching.pairs) - 1
+
+
+def _words(matching, end: str, count: int) -> list[tuple[int, ...]]:
+    """Words of one end, those left out that name no map of a shape with so many."""
+    words = []
+    for item in matching.pairs:
+        with suppress(IFSError):
+            words.append(word_of(getattr(item, end)))
+    return [word for word in words if max(word) < count]
+
+
+def remove(matching, index: int) -> None:
+    """Remove a pair; the one after it is the active one then.
+
+    Raises
+    ------
+    IFSError
+        If the object is a library override and the pair its library's.
+    """
+    try:
+        matching.pairs.remove(index)
+    except TypeError as error:
+        raise IFSError("A library override keeps the pairs of its library; make the object local first.") from error
+    matching.active_index = max(0, min(index, len(matching.pairs) - 1))
 
 
 def exchange_maps(matching, end: str, first: int, second: int) -> None:

@@ -19,12 +19,12 @@ def _has_pairs(cls, context) -> bool:
     if not editable_morph(cls, context):
         return False
     if len(context.object.ifs_morph.matching.pairs) == 0:
-        cls.poll_message_set("There are no pairs; press Morph or Match Pairs first")
+        cls.poll_message_set("There are no pairs; add one, or press Morph or Match Pairs first")
         return False
     return True
 
 
-class _PairOperator:
+class _ListOperator:
     bl_options = {"REGISTER", "UNDO"}
 
     poll = classmethod(_has_pairs)
@@ -32,19 +32,67 @@ class _PairOperator:
     def execute(self, context):
         """Change the list of pairs, and have the picture follow."""
         owner = context.object
-        matching = owner.ifs_morph.matching
         try:
-            listed, locks = list(pairs.stored(matching)), [item.locked for item in matching.pairs]
-            if not 0 <= matching.active_index < len(listed):
-                raise IFSError("There is no active pair; choose one in the list.")
-            active = self.change(owner.ifs_morph, listed, locks, matching.active_index)
             with window_held(owner):
-                pairs.write(matching, listed, locks)
-                matching.active_index = active
+                self.edit(owner.ifs_morph)
         except IFSError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         return {"FINISHED"}
+
+
+def _require_active(matching) -> None:
+    if not 0 <= matching.active_index < len(matching.pairs):
+        raise IFSError("There is no active pair; choose one in the list.")
+
+
+def _require_few(count: int) -> None:
+    if count > MOST_PAIRS:
+        raise IFSError(f"More than {MOST_PAIRS} pairs would come of it; split or double fewer maps.")
+
+
+class _PairOperator(_ListOperator):
+    def edit(self, settings):
+        """Change the pairs and their locks by `change`, which returns the number of the pair that is active then."""
+        matching = settings.matching
+        listed, locks = list(pairs.stored(matching)), [item.locked for item in matching.pairs]
+        _require_active(matching)
+        active = self.change(settings, listed, locks, matching.active_index)
+        pairs.write(matching, listed, locks)
+        matching.active_index = active
+
+
+class IFSMORPH_OT_pair_add(_ListOperator, bpy.types.Operator):
+    """Add a pair of maps that are in none yet, or double the active pair. An empty list is filled in the order given"""
+
+    bl_idname = "ifs_morph.pair_add"
+    bl_label = "Add Pair"
+
+    poll = classmethod(editable_morph)
+
+    def edit(self, settings):
+        """Append a pair and make it the active one."""
+        initial, final = shapes_of(settings)
+        matching = settings.matching
+        if len(matching.pairs) == 0:
+            listed = pairs.in_order(initial, final)
+            _require_few(len(listed))
+            pairs.write(matching, listed, [False] * len(listed))
+            return
+        _require_few(len(matching.pairs) + 1)
+        pairs.append(matching, initial, final)
+
+
+class IFSMORPH_OT_pair_remove(_ListOperator, bpy.types.Operator):
+    """Remove the active pair"""
+
+    bl_idname = "ifs_morph.pair_remove"
+    bl_label = "Remove Pair"
+
+    def edit(self, settings):
+        """Remove the active pair; the one after it becomes active."""
+        _require_active(settings.matching)
+        pairs.remove(settings.matching, settings.matching.active_index)
 
 
 class IFSMORPH_OT_pair_swap(_PairOperator, bpy.types.Operator):
@@ -103,8 +151,7 @@ class IFSMORPH_OT_pair_split(_PairOperator, bpy.types.Operator):
         # Where the map is in several pairs, they share the parts.
         sharing = [k for k, pair in enumerate(listed) if getattr(pair, field) == word]
         words = parts(shape, word)
-        if len(listed) + max(len(words) - len(sharing), 0) > MOST_PAIRS:
-            raise IFSError(f"More than {MOST_PAIRS} pairs would come of it; split other maps.")
+        _require_few(len(listed) + max(len(words) - len(sharing), 0))
         split = [
             replace(
                 listed[sharing[k % len(sharing)]],
@@ -118,6 +165,29 @@ class IFSMORPH_OT_pair_split(_PairOperator, bpy.types.Operator):
         first = sharing[0]
         listed[first:first], locks[first:first] = split, part_locks
         return first
+
+
+class IFSMORPH_OT_pair_join(_PairOperator, bpy.types.Operator):
+    """Join this part of a split map with all its other parts; of pairs that are then equal one is left"""
+
+    bl_idname = "ifs_morph.pair_join"
+    bl_label = "Join Parts"
+
+    end: bpy.props.EnumProperty(name="End", description="Which map of the pair to put together again", items=ENDS)
+
+    def change(self, settings, listed, locks, active):
+        """Put the whole map into the pairs of its parts."""
+        field = self.end.lower()
+        word = getattr(listed[active], field)
+        whole = word[:-1]
+        if not whole:
+            raise IFSError(f"“{pairs.text_of(word)}” is no part of a map that was split, so there is nothing to join.")
+        joined = [getattr(pair, field)[: len(whole)] == whole for pair in listed]
+        unturned = {field: whole, f"{field}_symmetry": pairs.IDENTITY}
+        changed = [replace(pair, **unturned) if part else pair for pair, part in zip(listed, joined, strict=True)]
+        kept = [k for k, pair in enumerate(changed) if not (joined[k] and pair in changed[:k])]
+        listed[:], locks[:] = [changed[k] for k in kept], [locks[k] for k in kept]
+        return listed.index(changed[active])
 
 
 class IFSMORPH_OT_pairs_lock(bpy.types.Operator):
@@ -142,31 +212,24 @@ class IFSMORPH_OT_pairs_lock(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class IFSMORPH_OT_clear_pairs(bpy.types.Operator):
+class IFSMORPH_OT_clear_pairs(_ListOperator, bpy.types.Operator):
     """Remove all pairs, so that map k becomes map k"""
 
     bl_idname = "ifs_morph.clear_pairs"
     bl_label = "Clear Pairs"
-    bl_options = {"REGISTER", "UNDO"}
 
-    poll = classmethod(_has_pairs)
-
-    def execute(self, context):
+    def edit(self, settings):
         """Remove the pairs."""
-        owner = context.object
-        try:
-            with window_held(owner):
-                pairs.write(owner.ifs_morph.matching, (), ())
-        except IFSError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+        pairs.write(settings.matching, (), ())
 
 
 CLASSES = (
+    IFSMORPH_OT_pair_add,
+    IFSMORPH_OT_pair_remove,
     IFSMORPH_OT_pair_swap,
     IFSMORPH_OT_pair_symmetry,
     IFSMORPH_OT_pair_split,
+    IFSMORPH_OT_pair_join,
     IFSMORPH_OT_pairs_lock,
     IFSMORPH_OT_clear_pairs,
 )

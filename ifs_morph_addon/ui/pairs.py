@@ -34,13 +34,15 @@ class IFSMORPH_PT_pairs(SidebarPanel, bpy.types.Panel):
         row.operator("ifs_morph.clear_pairs", text="", icon="X")
         if not has_pairs(settings):
             sentence(layout, context, "There are none: map k of the initial shape becomes map k of the final one.")
-            return
         problem = pairs_problem(settings)
         if problem:
             sentence(layout, context, problem, icon="ERROR")
         row = layout.row()
-        row.template_list("IFSMORPH_UL_pairs", "", matching, "pairs", matching, "active_index", rows=5)
+        row.template_list("IFSMORPH_UL_pairs", "", matching, "pairs", matching, "active_index", rows=7)
         column = row.column(align=True)
+        column.operator("ifs_morph.pair_add", text="", icon="ADD")
+        column.operator("ifs_morph.pair_remove", text="", icon="REMOVE")
+        column.separator()
         for direction, icon in (("UP", "TRIA_UP"), ("DOWN", "TRIA_DOWN")):
             column.operator("ifs_morph.pair_swap", text="", icon=icon).direction = direction
         column.separator()
@@ -59,6 +61,9 @@ class IFSMORPH_PT_pairs(SidebarPanel, bpy.types.Panel):
             row.prop(item, end.lower())
             row.operator("ifs_morph.pair_symmetry", text="", icon="FILE_REFRESH").end = end
             row.operator("ifs_morph.pair_split", text="", icon="MOD_EXPLODE").end = end
+            part = row.row(align=True)
+            part.enabled = len(getattr(item, end.lower()).split()) > 1
+            part.operator("ifs_morph.pair_join", text="", icon="AUTOMERGE_ON").end = end
         column.prop(item, "winding")
         symmetries = described(item)
         if symmetries:

@@ -13,7 +13,10 @@ from tests.addon.support import activate, add, content, show
 
 FIRST, LAST = 3, 18
 IDENTITY = ((1, 0, 0), (0, 1, 0))
-EDITS = ("morph", "match_pairs", "clear_pairs", "pair_swap", "pair_symmetry", "pair_split", "pairs_lock")
+EDITS = (
+    *("morph", "match_pairs", "pair_add"),
+    *("clear_pairs", "pair_remove", "pair_swap", "pair_symmetry", "pair_split", "pair_join", "pairs_lock"),
+)
 
 
 def pair(initial, final, kind="IMAGE"):
@@ -422,6 +425,117 @@ def test_maps_move_beside_a_pair_that_names_none(image, extension):
     assert [each[0] for each in listed(image)] == ["2", "1", "", "3"]
 
 
+def words(owner):
+    """Both words of each pair."""
+    return [each[:2] for each in listed(owner)]
+
+
+def test_a_list_of_pairs_is_begun_without_a_search(owner, scene, extension):
+    assert bpy.ops.ifs_morph.pair_add() == {"FINISHED"}
+    assert words(owner) == [("1", "1"), ("2", "2"), ("3", "3"), ("1", "4")]
+    assert not any(item.locked for item in owner.ifs_morph.matching.pairs)
+    assert "do not fit" not in sidebar(owner, extension)
+    show()
+    assert morph_of(owner, extension).count == 4
+    assert bpy.ops.ifs_morph.key_straight() == {"FINISHED"}
+
+
+def test_a_list_that_would_be_too_long_is_not_begun(image, extension):
+    for _ in range(61):
+        image.ifs_morph.final.maps.add()
+    with pytest.raises(RuntimeError, match="More than 64 pairs"):
+        bpy.ops.ifs_morph.pair_add()
+    assert listed(image) == []
+
+
+def test_a_pair_is_added_for_what_is_in_none(image, extension):
+    set_pairs(image, ("1", "1"), ("3 2", "2"), ("x", "3"))
+    added = []
+    for _ in range(4):
+        bpy.ops.ifs_morph.pair_add()
+        assert image.ifs_morph.matching.active_index == len(listed(image)) - 1
+        added.append(words(image)[-1])
+    # Where nothing is missing at one end, the active pair's map is doubled.
+    assert added == [("2", "4"), ("3 1", "4"), ("3 3", "4"), ("3 3", "4")]
+    image.ifs_morph.matching.pairs[2].initial = "1"
+    assert "do not fit" not in sidebar(image, extension)
+
+
+def test_a_doubled_pair_is_like_its_original(image, extension):
+    set_pairs(image, ("1", "1"), ("2", "2"), ("3", "3"), ("3", "4"))
+    bpy.ops.ifs_morph.pair_symmetry(end="FINAL")
+    image.ifs_morph.matching.pairs[0].winding = 2
+    image.ifs_morph.matching.pairs[0].locked = True
+    bpy.ops.ifs_morph.pair_add()
+    first, last = listed(image)[0], listed(image)[-1]
+    assert (last[:5], last[5]) == (first[:5], False)
+    assert first[3] != IDENTITY
+
+
+def test_removing_leaves_the_others_and_says_what_is_missing(image, extension):
+    set_pairs(image, ("1", "1"), ("2", "x"), ("3", "3"), ("3", "4"), ("3", "4"))
+    image.ifs_morph.matching.active_index = 4
+    assert bpy.ops.ifs_morph.pair_remove() == {"FINISHED"}
+    assert image.ifs_morph.matching.active_index == 3
+    image.ifs_morph.matching.active_index = 1
+    assert bpy.ops.ifs_morph.pair_remove() == {"FINISHED"}
+    assert image.ifs_morph.matching.active_index == 1
+    assert words(image) == [("1", "1"), ("3", "3"), ("3", "4")]
+    assert "the whole initial shape, since none has “2”" in sidebar(image, extension)
+    bpy.ops.ifs_morph.pair_add()
+    assert words(image)[-1] == ("2", "2")
+    assert "do not fit" not in sidebar(image, extension)
+    image.ifs_morph.matching.active_index = 7
+    with pytest.raises(RuntimeError, match="no active pair"):
+        bpy.ops.ifs_morph.pair_remove()
+    assert len(listed(image)) == 4
+
+
+def test_joining_undoes_a_split(image, extension):
+    set_pairs(image, ("1", "1"), ("2", "2"), ("3", "3"), ("3", "4"))
+    image.ifs_morph.matching.pairs[2].locked = True
+    before = listed(image)
+    for active, end in ((2, "INITIAL"), (1, "FINAL"), (0, "INITIAL")):
+        image.ifs_morph.matching.active_index = active
+        whole = listed(image)
+        bpy.ops.ifs_morph.pair_split(end=end)
+        assert listed(image) != whole
+        image.ifs_morph.matching.active_index += 1
+        bpy.ops.ifs_morph.pair_join(end=end)
+        assert listed(image) == whole
+        assert image.ifs_morph.matching.active_index in (active, active + 1)
+        assert "do not fit" not in sidebar(image, extension)
+    assert listed(image) == before
+    with pytest.raises(RuntimeError, match="“1” is no part of a map"):
+        bpy.ops.ifs_morph.pair_join(end="FINAL")
+
+
+def test_joining_takes_all_parts_with_it(image, extension):
+    set_pairs(image, ("1 1", "1"), ("1 2", "2"), ("1 3 1", "3"), ("1 3 2", "4"), ("1 3 3", "4"), ("2", "1"), ("3", "1"))
+    bpy.ops.ifs_morph.pair_symmetry(end="INITIAL")
+    bpy.ops.ifs_morph.pair_join(end="INITIAL")
+    assert words(image) == [("1", "1"), ("1", "2"), ("1", "3"), ("1", "4"), ("2", "1"), ("3", "1")]
+    assert all(each[2] == IDENTITY for each in listed(image))
+    assert "do not fit" not in sidebar(image, extension)
+
+
+@pytest.mark.parametrize("name", ["pair_add", "pair_remove", "pair_join"])
+def test_changes_of_the_list_are_one_step_of_undo(image, extension, name):
+    assert {"REGISTER", "UNDO"} <= getattr(extension.ifs_morph_addon.operators.pairs, f"IFSMORPH_OT_{name}").bl_options
+    set_pairs(image, ("1 1", "1"), ("1 2", "2"), ("1 3", "3"), ("2", "4"), ("3", "4"))
+    owner = image.name
+    bpy.ops.ed.undo_push(message="before")
+    before = listed(image)
+    getattr(bpy.ops.ifs_morph, name)()
+    after = listed(bpy.data.objects[owner])
+    assert after != before
+    bpy.ops.ed.undo_push(message="after")
+    bpy.ops.ed.undo()
+    assert listed(bpy.data.objects[owner]) == before
+    bpy.ops.ed.redo()
+    assert listed(bpy.data.objects[owner]) == after
+
+
 def test_pairs_move_with_the_maps(image, extension):
     set_pairs(image, ("1", "1"), ("2", "2"), ("3 1", "3"), ("3 2", "4"), ("3 3", "4"))
     before = morph_of(image, extension).at(0.4, 0.4).maps
@@ -441,7 +555,7 @@ def test_pieces_have_the_colors_of_their_maps(image, extension):
 
 
 def test_what_has_no_pairs_says_so(image, extension):
-    for name in EDITS[2:]:
+    for name in EDITS[3:]:
         assert "no pairs" in reason(getattr(bpy.ops.ifs_morph, name)), name
     assert "There are none" in sidebar(image, extension)
 
@@ -488,6 +602,11 @@ def test_override_keeps_the_number_of_its_pairs(library, extension):
     bpy.ops.ifs_morph.pair_swap(direction="DOWN")
     assert listed(owner) != before
     after = listed(owner)
-    with pytest.raises(RuntimeError, match="make the object local"):
-        bpy.ops.ifs_morph.clear_pairs()
+    for name in ("clear_pairs", "pair_remove"):
+        with pytest.raises(RuntimeError, match="make the object local"):
+            getattr(bpy.ops.ifs_morph, name)()
+    assert listed(owner) == after
+    bpy.ops.ifs_morph.pair_add()
+    assert listed(owner)[:-1] == after
+    bpy.ops.ifs_morph.pair_remove()
     assert listed(owner) == after
