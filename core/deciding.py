@@ -89,9 +89,20 @@ def decide_frames(
     return _kernels(translation).decide_each(linear, translation, float(tolerance), bool(with_gap))
 
 
-def are_connected(linear: np.ndarray, translation: np.ndarray, allowed: np.ndarray, tolerance: float) -> np.ndarray:
-    """Which of some attractors (F,) are connected at the tolerance; arguments as in `decide_frames`."""
-    return decide_frames(linear, translation, allowed, tolerance, False)[0] == CONNECTED
+def are_connected(
+    linear: np.ndarray,
+    translation: np.ndarray,
+    allowed: np.ndarray,
+    tolerance: float,
+    tolerated: np.ndarray | float = 0.0,
+) -> np.ndarray:
+    """Which of some attractors (F,) are connected at the tolerance, or gape by no more than is `tolerated` (F,).
+
+    Other arguments as in `decide_frames`.
+    """
+    with_gap = bool(np.any(tolerated > tolerance))
+    state, gap, _ = decide_frames(linear, translation, allowed, tolerance, with_gap)
+    return (state == CONNECTED) | (gap[:, 1] <= tolerated)
 
 
 def _kernels(translation: np.ndarray) -> ModuleType:

@@ -24,6 +24,7 @@ from .morph import Morph, spread
 from .report import PathReport, check_frames_steps, family
 from .route import STEPS, cheapest_route, clearance
 from .swelling import envelope, least_swell_field_steps, least_swell_steps
+from .tolerated import tolerated_at_ends, tolerated_gaps
 
 METHODS = ("planned", "per map", "straight", "straight unswollen")
 """Through the locus; a path for each map; straight with least swell; straight without swell, the paper's Figure 5."""
@@ -143,6 +144,7 @@ def plan_path_steps(
     morph.initial.require_attractor()
     morph.final.require_attractor()
     line = keys = _straight_keys(np.array([[0.0, 0.0], [1.0, 1.0]]), frames)
+    at_ends = tolerated_at_ends(morph.shapes, tolerance)
     offset_keys, reason = None, ""
     if method == "planned":
         if locus is None:
@@ -159,7 +161,9 @@ def plan_path_steps(
                 else "The connected path in (u,v) is far longer than the straight line, so the maps swell instead."
             )
             u, v = nodes(SWELL_RESOLUTION[morph.DIMENSION])
-            field = yield from parallel.part(least_swell_field_steps(morph, u, v, tolerance, threads=threads), 0.5, 0.7)
+            tolerated = tolerated_gaps(at_ends, u)
+            searching = least_swell_field_steps(morph, u, v, tolerance, 16, threads, tolerated)
+            field = yield from parallel.part(searching, 0.5, 0.7)
             points = _route_of_least_swell(u, v, field)
         keys = _rounded(morph, _straight_keys(points, frames), frames, tolerance)
     if method == "per map":
@@ -168,19 +172,19 @@ def plan_path_steps(
             offset_keys = found
             furthest = np.hypot(*np.moveaxis(found.value, 1, 0)).max()
             reason = f"Each map goes along a path of its own, up to {furthest:.2f} beside the straight line in (u,v)."
-    swell_keys = _no_swell()
+    times = np.arange(frames) / (frames - 1)
+    tolerated, swell_keys = tolerated_gaps(at_ends, times), _no_swell()
     if method != "straight unswollen":
         swell_keys = yield from parallel.part(
-            _swell_steps(morph, keys, offset_keys, frames, tolerance, threads), 0.7, 0.9
+            _swell_steps(morph, keys, offset_keys, tolerance, tolerated, threads), 0.7, 0.9
         )
-    times = np.arange(frames) / (frames - 1)
     places, diagonal = _sample(keys, swell_keys, offset_keys, times), _sample(line, _no_swell(), None, times)
     elsewhere = not np.array_equal(places, diagonal)
     end = 0.95 if elsewhere else 1.0
     checked = straight = yield from parallel.part(check_frames_steps(morph, diagonal, tolerance, threads), 0.9, end)
     if elsewhere:
         checked = yield from parallel.part(check_frames_steps(morph, places, tolerance, threads), 0.95, 1.0)
-    report = PathReport(checked, straight, method, reason, morph.flips, morph.turned_over)
+    report = PathReport(checked, straight, tolerated, method, reason, morph.flips, morph.turned_over)
     return Path(keys, swell_keys, offset_keys, report)
 
 
@@ -330,12 +334,18 @@ def _rounded(morph: Morph, keys: Keys, frames: int, tolerance: float) -> Keys:
 
 
 def _swell_steps(
-    morph: Morph, keys: Keys, offset_keys: Keys | None, frames: int, tolerance: float, threads: int | None
+    morph: Morph,
+    keys: Keys,
+    offset_keys: Keys | None,
+    tolerance: float,
+    tolerated: np.ndarray,
+    threads: int | None,
 ) -> Generator[float, None, Keys]:
-    """Keys of the least smooth swell that holds every frame together, zero at both ends."""
+    """Keys of the least smooth swell that holds every frame (F,) together, zero at both ends."""
+    frames = len(tolerated)
     times = np.arange(frames) / (frames - 1)
     places = _sample(keys, _no_swell(), offset_keys, times)
-    needed = yield from parallel.part(least_swell_steps(morph, places, tolerance, 0.0, threads), 0.0, 0.5)
+    needed = yield from parallel.part(least_swell_steps(morph, places, tolerance, 0.0, threads, tolerated), 0.0, 0.5)
     needed = _zero_at_ends(needed)
     for attempt in range(SWELL_ATTEMPTS):
         if not needed.any():
@@ -345,7 +355,7 @@ def _swell_steps(
         # More swell than the least can fail; there the next that works is asked for.
         above = np.clip(swell_keys.at(times), 0.0, 1.0)
         share = 0.5 + 0.5 * attempt / SWELL_ATTEMPTS
-        steps = least_swell_steps(morph, places, tolerance, above, threads)
+        steps = least_swell_steps(morph, places, tolerance, above, threads, tolerated)
         raised = yield from parallel.part(steps, share, share + 0.5 / SWELL_ATTEMPTS)
         raised = _zero_at_ends(raised)
         failing = raised > above + 1e-12

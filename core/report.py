@@ -83,6 +83,8 @@ class PathReport:
     ----------
     path, straight : FrameCheck
         Frame by frame.
+    tolerated : (F,)
+        Gaps of the frames that are let pass, see `tolerated`.
     method : str
         How the path was found, one of `path.METHODS`.
     reason : str
@@ -95,6 +97,7 @@ class PathReport:
 
     path: FrameCheck
     straight: FrameCheck
+    tolerated: np.ndarray
     method: str
     reason: str
     flips: tuple[int, ...]
@@ -115,15 +118,23 @@ class PathReport:
                 lines.append(f"{done}, since only one end reflects: map {maps}.")
         return "\n".join(lines)
 
+    @property
+    def broken(self) -> int:
+        """Frames that are neither known to be in one piece nor let pass."""
+        passed = (self.tolerated > self.path.tolerance) & (self.path.gap[:, 0] <= self.tolerated)
+        return int(np.count_nonzero((self.path.state != Connectedness.CONNECTED) & ~passed))
+
     def _failures(self) -> list[str]:
-        """What swell could not mend."""
-        broken = np.flatnonzero(self.path.state != Connectedness.CONNECTED)
-        if self.method == "straight unswollen" or len(broken) == 0:
-            return []
-        ends = [name for name, frame in (("initial", 0), ("final", len(self.path.state) - 1)) if frame in broken]
-        lines = [f"The {' and the '.join(ends)} shape is not in one piece itself."] if ends else []
-        if len(broken) > len(ends):
-            lines.append(f"At {len(broken) - len(ends)} frames no swell was found that mends the shape.")
+        """What swell could not mend, or was not to."""
+        state, lines = self.path.state, []
+        ends = [name for name, at in (("initial", 0), ("final", -1)) if state[at] != Connectedness.CONNECTED]
+        if ends:
+            lines.append(f"The {' and the '.join(ends)} shape is not in one piece itself.")
+        if (self.tolerated > self.path.tolerance).any():
+            lines.append("Gaps as wide as there are let pass on the way, less and less towards the other end.")
+        undecided_ends = np.count_nonzero(state[[0, -1]] == Connectedness.UNDECIDED)
+        if self.method != "straight unswollen" and self.broken > undecided_ends:
+            lines.append(f"At {self.broken - undecided_ends} frames no swell was found that mends the shape.")
         return lines
 
 

@@ -19,7 +19,7 @@ is not monotone in swell."""
 
 STRIDE, LONG_STRIDE = 1, 8
 """By how many of these at a time it is looked for the first; the latter where a look takes long, which is in space and
-for recurrent shapes."""
+where shapes are recurrent or hide maps."""
 
 NEVER = 2.0
 """Least swell where no swell up to 1 is known to work."""
@@ -28,31 +28,38 @@ CHUNK = 8
 
 
 def least_swell_steps(
-    morph: Morph, places: np.ndarray, tolerance: float, at_least: np.ndarray | float = 0.0, threads: int | None = None
+    morph: Morph,
+    places: np.ndarray,
+    tolerance: float,
+    at_least: np.ndarray | float = 0.0,
+    threads: int | None = None,
+    tolerated: np.ndarray | float = 0.0,
 ) -> Generator[float, None, np.ndarray]:
     """Least swell (F,) that makes the shape connected at each of some places, from `at_least` on; in steps.
 
-    Places are as `morph.spread` takes them; the swell in them does not count.
+    Places are as `morph.spread` takes them; the swell in them does not count. Gaps up to `tolerated` are let pass.
     """
-    start = np.broadcast_to(at_least, len(places))
+    start, tolerated = (np.broadcast_to(each, len(places)) for each in (at_least, tolerated))
 
     def search(first: int) -> list[float]:
-        return [_least(morph, places[k], start[k], tolerance) for k in range(first, min(first + CHUNK, len(places)))]
+        chunk = range(first, min(first + CHUNK, len(places)))
+        return [_least(morph, places[k], start[k], tolerance, tolerated[k]) for k in chunk]
 
     found = yield from parallel.steps(search, range(0, len(places), CHUNK), threads)
     return np.concatenate(found) if found else np.empty(0)
 
 
-def _least(morph: Morph, place: np.ndarray, start: float, tolerance: float) -> float:
+def _least(morph: Morph, place: np.ndarray, start: float, tolerance: float, tolerated: float) -> float:
     swells = np.append(start, np.arange(np.floor(start * LEVELS) + 1, LEVELS + 1) / LEVELS)
     places = np.tile(place, (len(swells), 1))
     places[:, 2] = swells
     linear, translation, allowed = family(morph, places)
 
     def holds(k: int) -> bool:
-        return bool(are_connected(linear[k : k + 1], translation[k : k + 1], allowed[k : k + 1], tolerance)[0])
+        here = slice(k, k + 1)
+        return bool(are_connected(linear[here], translation[here], allowed[here], tolerance, tolerated)[0])
 
-    stride = LONG_STRIDE if morph.DIMENSION == 3 or morph.is_recurrent else STRIDE
+    stride = STRIDE if morph.DIMENSION == 2 and allowed.all() else LONG_STRIDE
     for found in sorted({*range(0, len(swells), stride), len(swells) - 1}):
         if holds(found):
             # Back over what was passed by, by halves.
@@ -65,9 +72,19 @@ def _least(morph: Morph, place: np.ndarray, start: float, tolerance: float) -> f
 
 
 def least_swell_field_steps(
-    morph: Morph, u: np.ndarray, v: np.ndarray, tolerance: float, levels: int = 16, threads: int | None = None
+    morph: Morph,
+    u: np.ndarray,
+    v: np.ndarray,
+    tolerance: float,
+    levels: int = 16,
+    threads: int | None = None,
+    tolerated: np.ndarray | float = 0.0,
 ) -> Generator[float, None, np.ndarray]:
-    """Least swell (V, U) over a grid, to the next of `levels`; infinite where there is no attractor; in steps."""
+    """Least swell (V, U) over a grid, to the next of `levels`; infinite where there is no attractor; in steps.
+
+    Gaps up to `tolerated` (U,) are let pass.
+    """
+    tolerated = np.broadcast_to(tolerated, len(u))
     swells = np.arange(levels + 1) / levels
     linear = np.ascontiguousarray(morph.linear(u[:, None, None], swells[:, None]))
     linear = linear.reshape(len(u), levels + 1, morph.count, -1)
@@ -79,13 +96,14 @@ def least_swell_field_steps(
         least = np.full(len(v), NEVER)
         still = np.arange(len(v))
         for level, swell in enumerate(swells):
-            state, _, _ = yield from column_steps(
-                linear[k, level], start, drift, v[still], allowed[k], tolerance, False
+            state, gap, _ = yield from column_steps(
+                linear[k, level], start, drift, v[still], allowed[k], tolerance, tolerated[k] > tolerance
             )
-            least[still[state == Connectedness.CONNECTED]] = swell
+            holds = (state == Connectedness.CONNECTED) | (gap[:, 1] <= tolerated[k])
+            least[still[holds]] = swell
             if level == 0:
                 least[still[state == Connectedness.NO_ATTRACTOR]] = np.inf
-            still = still[(state != Connectedness.CONNECTED) & (state != Connectedness.NO_ATTRACTOR)]
+            still = still[~holds & (state != Connectedness.NO_ATTRACTOR)]
             if len(still) == 0:
                 break
         return least

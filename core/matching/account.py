@@ -60,9 +60,14 @@ class MatchReport:
         return len(self.path.path.state) - self.path.path.count(Connectedness.CONNECTED)
 
     @property
+    def broken(self) -> int:
+        """Frames that should have been in one piece: all but those between ends that are in pieces themselves."""
+        return self.path.broken
+
+    @property
     def spotless(self) -> bool:
-        """Whether every frame is in one piece without swell."""
-        return self.most_swell == 0 and self.disconnected == 0
+        """Whether no frame is broken, and none swells."""
+        return self.most_swell == 0 and self.broken == 0
 
     @property
     def worst_gap(self) -> float:

@@ -224,7 +224,7 @@ def match_steps(
     plain_morph = morph_of_pairs(initial, final, naive, "elementwise")
     checking = check_frames_steps(plain_morph, polar.uv_swell, tolerance, threads)
     element_wise = yield from parallel.part(checking, 0.04, 0.06)
-    if polar.count(Connectedness.CONNECTED) < frames:
+    if unswollen.report.broken:
         straight = yield from parallel.part(
             plan_path_steps(naive_morph, None, frames, tolerance, "straight", threads), 0.06, 0.1
         )
@@ -319,20 +319,19 @@ def path_cost(path: Path) -> float:
 
 
 def _no_worse(new: Match, straight: Path | None) -> bool:
-    """Whether a match is no worse than the naive straight one, in swell and in frames not in one piece."""
+    """Whether a match is no worse than the naive straight one, in swell and in broken frames."""
     if straight is None:
         return True
     check = straight.report.path
-    broken = len(check.state) - check.count(Connectedness.CONNECTED)
     return (
-        new.report.disconnected <= broken
+        new.report.broken <= straight.report.broken
         and new.report.most_swell <= check.most_swell
         and new.report.mean_swell <= check.mean_swell
     )
 
 
 def _before(new: Match, best: Match) -> bool:
-    return (new.report.disconnected, new.cost) < (best.report.disconnected, best.cost)
+    return (new.report.broken, new.cost) < (best.report.broken, best.cost)
 
 
 def _verified_steps(

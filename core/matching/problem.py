@@ -10,6 +10,7 @@ import numpy as np
 from ..affine import compose, rotation, transform
 from ..ifs import IFS
 from ..joining import Word, word_map
+from ..tolerated import tolerated_at_ends, tolerated_gaps
 from . import scoring, space_scoring
 from .assignment import assign
 from .pairs import Pair
@@ -104,6 +105,7 @@ class Problem:
     ) -> None:
         self.ends = (initial, final)
         self.tolerance, self.threads, self.locks = tolerance, threads, locks
+        self.at_ends = tolerated_at_ends((initial.ifs, final.ifs), tolerance)
         self.maps = [end.maps() for end in self.ends]
         self.scoring = scoring if initial.ifs.DIMENSION == 2 else space_scoring
         self.tables = [self.scoring.Table.of(maps) for maps in self.maps]
@@ -117,6 +119,10 @@ class Problem:
     def words(self, rows: np.ndarray, end: int) -> np.ndarray:
         """Words (N,) of one end of a candidate's rows."""
         return rows[end] // self.sizes[end]
+
+    def tolerated(self, samples: np.ndarray) -> np.ndarray:
+        """Gaps (S,) that are let pass at some times."""
+        return tolerated_gaps(self.at_ends, samples)
 
     def free_words(self, end: int) -> list[int]:
         """Words of one end that no lock holds: the others are in the locked pairs and, if it can be, in no more."""
@@ -182,15 +188,14 @@ class Problem:
         """Scores and swells as `scoring.score` gives them, and the work."""
         count = rows.shape[2]
         scores, swells, work = self.scoring.score(
-            *self.tables, rows, winding, samples, self.tolerance, bound, extra, self.threads
+            *self.tables, rows, winding, samples, self.tolerance, self.tolerated(samples), bound, extra, self.threads
         )
         return scores, swells, work * count * (count - 1) // 2
 
     def _beside(self, rows: np.ndarray, winding: np.ndarray) -> np.ndarray:
         """What candidates (C,) cost beside swell."""
-        return self.scoring.score(*self.tables, rows, winding, np.empty(0), self.tolerance, np.inf, 0.0, self.threads)[
-            0
-        ]
+        none = np.empty(0)
+        return self.scoring.score(*self.tables, rows, winding, none, self.tolerance, none, np.inf, 0.0, self.threads)[0]
 
     def pairs(self, candidate: Candidate) -> tuple[Pair, ...]:
         """A candidate as pairs of words and symmetries."""

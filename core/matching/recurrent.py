@@ -31,7 +31,7 @@ class RecurrentProblem(Problem):
         def of_candidate(k: int) -> tuple[float, np.ndarray, int]:
             pairs = self.pairs_of(rows[k], winding[k])
             morph = morph_of_pairs(*(end.ifs for end in self.ends), pairs)
-            swells, decided = _least_swells(morph, samples, self.tolerance, bound - beside[k])
+            swells, decided = _least_swells(morph, samples, self.tolerance, self.tolerated(samples), bound - beside[k])
             cost = beside[k] + WORST * swells.max() + MEAN * swells.mean()
             return np.nan_to_num(cost, nan=np.inf), swells, decided * EFFORT * morph.count * (morph.count - 1) // 2
 
@@ -50,7 +50,9 @@ def problem_of(
     return kind(initial, final, tolerance, locks, threads)
 
 
-def _least_swells(morph: Morph, samples: np.ndarray, tolerance: float, room: float) -> tuple[np.ndarray, int]:
+def _least_swells(
+    morph: Morph, samples: np.ndarray, tolerance: float, tolerated: np.ndarray, room: float
+) -> tuple[np.ndarray, int]:
     """Swells (S,) that a morph needs on the straight line, NaN from where they cost more than `room`; shapes decided.
 
     By the same steps as in the kernel of `scoring`.
@@ -66,7 +68,7 @@ def _least_swells(morph: Morph, samples: np.ndarray, tolerance: float, room: flo
         while low < high and level < len(LEVELS):
             here = slice(level, level + 1)
             decided += 1
-            if are_connected(linear[here], translation[here], allowed[here], tolerance)[0]:
+            if are_connected(linear[here], translation[here], allowed[here], tolerance, tolerated[place])[0]:
                 high = level
             else:
                 low = level + 1

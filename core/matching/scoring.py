@@ -96,6 +96,7 @@ def score(
     winding: np.ndarray,
     samples: np.ndarray,
     tolerance: float,
+    tolerated: np.ndarray,
     bound: float = np.inf,
     extra: float = 0.0,
     threads: int | None = None,
@@ -113,6 +114,8 @@ def score(
     samples : (S,)
         Times at which the straight line is looked at.
     tolerance : float
+    tolerated : (S,)
+        Gaps let pass at these times, see `tolerated`; those up to the tolerance always are.
     bound : float
         A candidate is given up when its score is sure to be above; infinity is its score then.
     extra : float
@@ -137,6 +140,7 @@ def score(
             winding[chosen],
             samples,
             tolerance,
+            tolerated,
             bound,
             extra,
         )
@@ -160,6 +164,7 @@ def _score(
     winding,
     samples,
     tolerance,
+    tolerated,
     bound,
     extra,
 ):
@@ -170,7 +175,7 @@ def _score(
     ends = np.empty((maps, 2, 3))
     linear, translation = np.empty((maps, 4)), np.empty((maps, 2))
     desk, drift, along = empty_desk(maps), np.zeros((maps, 2)), np.zeros(1)
-    no, first = np.bool_(False), np.int64(0)
+    first = np.int64(0)
     state, gap, labels = np.empty(1, np.uint8), np.empty((1, 2)), np.empty((1, maps), np.int64)
     work, usual = 0, USUAL * maps * (maps - 1) // 2 + 1
     for candidate in range(count):
@@ -195,7 +200,7 @@ def _score(
                 total += FLIP * math.sqrt(_area(ends[k, 0]) + _area(ends[k, 1]))
         total += KEEP * _distortion(start, turn, sign, ends, first_translation, last_translation, rows[candidate])
         for sample in range(samples.shape[0]):
-            at = samples[sample]
+            at, gapes = samples[sample], tolerated[sample] > tolerance
             for k in range(maps):
                 i, j = rows[candidate, 0, k], rows[candidate, 1, k]
                 translation[k] = (1 - at) * first_translation[i] + at * last_translation[j]
@@ -210,9 +215,9 @@ def _score(
             low, high, level = 0, most + 1, 0
             while low < high and level < LEVELS.shape[0]:
                 _linear_parts(start, turn, sign, ends, at, LEVELS[level], linear)
-                decide_drift(desk, linear, translation, drift, along, tolerance, no, first, state, gap, labels)
+                decide_drift(desk, linear, translation, drift, along, tolerance, gapes, first, state, gap, labels)
                 work += max(1, desk.tree.used[1] // usual)
-                if state[0] == CONNECTED:
+                if state[0] == CONNECTED or gap[0, 1] <= tolerated[sample]:
                     high = level
                 else:
                     low = level + 1

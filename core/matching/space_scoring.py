@@ -52,6 +52,7 @@ def score(
     winding: np.ndarray,
     samples: np.ndarray,
     tolerance: float,
+    tolerated: np.ndarray,
     bound: float = np.inf,
     extra: float = 0.0,
     threads: int | None = None,
@@ -62,7 +63,7 @@ def score(
         chosen = rows[start : start + CHUNK]
         ends = [SpaceIFS(table.maps[chosen[:, end].ravel()]) for end, table in enumerate((initial, final))]
         morph = SpaceMorph(*ends, winding=winding[start : start + CHUNK].ravel())
-        return _score(morph, len(chosen), samples, tolerance, bound, extra)
+        return _score(morph, len(chosen), samples, tolerance, tolerated, bound, extra)
 
     found = parallel.run(part, range(0, len(rows), CHUNK), threads)
     scores, swells = (np.concatenate([each[k] for each in found]) for k in (0, 1))
@@ -70,7 +71,13 @@ def score(
 
 
 def _score(
-    morph: SpaceMorph, count: int, samples: np.ndarray, tolerance: float, bound: float, extra: float
+    morph: SpaceMorph,
+    count: int,
+    samples: np.ndarray,
+    tolerance: float,
+    tolerated: np.ndarray,
+    bound: float,
+    extra: float,
 ) -> tuple[np.ndarray, np.ndarray, int]:
     """Score `count` candidates, whose maps are those of one morph, one candidate's after the other's."""
     total, worst = extra + _cost_beside_swell(morph, count), np.zeros(count)
@@ -83,7 +90,8 @@ def _score(
         # The most swell that keeps the score within the bound.
         reached = total[:, None] + MEAN * TRIED / len(samples) + WORST * np.maximum(worst[:, None], TRIED)
         most = np.count_nonzero(reached <= bound, axis=1) - 1
-        least, cost = _least(morph, samples[times], np.where(np.isfinite(total), most, -1), tolerance)
+        most_open = np.where(np.isfinite(total), most, -1)
+        least, cost = _least(morph, samples[times], most_open, tolerance, tolerated[times])
         work += cost
         total[(least > most[:, None]).any(axis=1)] = np.inf
         kept = np.isfinite(total)
@@ -93,22 +101,26 @@ def _score(
     return total + WORST * worst, swells, work
 
 
-def _least(morph: SpaceMorph, times: np.ndarray, most: np.ndarray, tolerance: float) -> tuple[np.ndarray, int]:
+def _least(
+    morph: SpaceMorph, times: np.ndarray, most: np.ndarray, tolerance: float, tolerated: np.ndarray
+) -> tuple[np.ndarray, int]:
     """The least of `TRIED` (C, S) that helps, one more than `most` (C,) where none up to it does; and the work."""
     count, levels = len(most), len(LEVELS)
     translation = morph.translation(times[:, None]).reshape(len(times), count, -1, 3)
     # None; then the most; then by bisection, as if more were always better.
     most = np.broadcast_to(most, (len(times), count))
+    tolerated = np.broadcast_to(tolerated[:, None], most.shape)
+    with_gap = bool((tolerated > tolerance).any())
     low, high, level = np.zeros_like(most), most + 1, np.zeros_like(most)
     work = 0
     while (still := (low < high) & (level < levels)).any():
         swell = np.repeat(LEVELS[np.minimum(level, levels - 1)], morph.count // count, axis=1)
         linear = morph.linear(times[:, None], swell).reshape(*translation.shape[:3], 9)
         follows = np.ones((len(still), *translation.shape[2:3] * 2), dtype=bool)
-        state, _, _ = decide_frames(linear[still], translation[still], follows, tolerance, False)
+        state, gap, _ = decide_frames(linear[still], translation[still], follows, tolerance, with_gap)
         work += int(np.where(state == UNDECIDED, UNDECIDED_EFFORT, EFFORT).sum())
         whole = np.zeros_like(still)
-        whole[still] = state == CONNECTED
+        whole[still] = (state == CONNECTED) | (gap[:, 1] <= tolerated[still])
         high = np.where(whole, level, high)
         low = np.where(still & ~whole, level + 1, low)
         second = (low == 1) & (high == most + 1)

@@ -226,6 +226,13 @@ def test_the_first_answer_is_what_was_given_and_waits_for_nothing(locked):
     assert last.report.straight_swell is not None
 
 
+@pytest.mark.parametrize("final", ["Cantor dust", "gasket"])
+def test_dust_does_not_leap(final):
+    found = match(SHAPES["Cantor dust"], SHAPES[final], frames=60, budget=20_000)
+    assert found.report.broken == 0
+    assert np.abs(np.diff(found.report.path.path.uv_swell[:, 2])).max() < 0.1
+
+
 def test_a_shape_becomes_itself_without_ado():
     shown = []
     found = match(SHAPES["gasket"], SHAPES["gasket"], frames=24, found=shown.append)
