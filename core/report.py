@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -103,8 +103,16 @@ class PathReport:
     flips: tuple[int, ...]
     turned_over: tuple[int, ...] = ()
 
-    def text(self, pixel: float | None = None) -> str:
-        """The report in a few plain sentences, a line each; `pixel` as for `FrameCheck.gap_text`."""
+    def text(self, pixel: float | None = None, names: Sequence[str] = ()) -> str:
+        """The report in a few plain sentences, a line each.
+
+        Parameters
+        ----------
+        pixel : float, optional
+            As for `FrameCheck.gap_text`.
+        names : sequence of str
+            Of the maps; “map 1” and so on if there are none.
+        """
         lines = [_sentence("The path", self.path, pixel)]
         if self.reason:
             lines.append(self.reason)
@@ -114,8 +122,8 @@ class PathReport:
             lines.append(_sentence("The straight line without swell", self.straight, pixel))
         for done, flipped in (("Flattened half-way", self.flips), ("Turned over through space", self.turned_over)):
             if flipped:
-                maps = ", ".join(str(i + 1) for i in flipped)
-                lines.append(f"{done}, since only one end reflects: map {maps}.")
+                maps = ", ".join(names[i] if names else f"map {i + 1}" for i in flipped)
+                lines.append(f"{done}, since only one end reflects: {maps}.")
         return "\n".join(lines)
 
     @property

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ..connectedness import Connectedness
 from ..report import FrameCheck, PathReport
 from .pairs import Pair
-from .wording import symmetry_text
+from .wording import symmetry_text, word_text
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,8 @@ class MatchReport:
 
     def text(self, pixel: float | None = None) -> str:
         """The report in a few plain sentences, a line each; `pixel` as for `FrameCheck.gap_text`."""
-        lines = [self._pairing(), *self.path.text(pixel).split("\n")]
+        names = [f"{word_text(pair.initial)} to {word_text(pair.final)}" for pair in self.pairs]
+        lines = [self._pairing(), *self.path.text(pixel, names).split("\n")]
         if self.disconnected:
             worst = self.worst_gap / self.path.path.tolerance
             lines.append(f"The widest gap is {worst:.1f} times what counts as none.")

@@ -42,7 +42,7 @@ PLANNED = 2
 DEFAULT_SCHEMES = ("polar", "log-polar")
 """Tried where none is asked for; the second with the best candidate only."""
 
-PLANNED_MAPS = 9
+PLANNED_MAPS = 16
 """With more maps than this a plan takes too long, and gains little over the straight line."""
 
 RECURRENT_MAPS = 2
@@ -140,7 +140,7 @@ def match(
     IFSError
         If an end has no attractor, or what is locked does not fit the shapes.
     ValueError
-        If there are fewer than 2 frames or the tolerance is not above 0.
+        If there are fewer than 2 frames, or the tolerance or the budget is not above 0.
     """
     steps = match_steps(
         initial, final, frames, tolerance, locked, initial_words, final_words, scheme, flip, budget, threads, found
@@ -165,6 +165,8 @@ def match_steps(
     """`match` in steps, each yielding the share done."""
     if frames < 2:
         raise ValueError(f"A morph over {frames} frames cannot be matched; it needs 2 or more.")
+    if budget < 1:
+        raise ValueError(f"A budget of {budget} allows no search; it must be 1 or more.")
     if not tolerance > 0:
         raise ValueError(f"The tolerance is {tolerance:g}; it must be above 0.")
     initial, final = in_one_space(initial, final)
@@ -281,13 +283,15 @@ def _searched_steps(
 ) -> Generator[float, None, list[tuple[Problem, Candidate]]]:
     """Search one problem after the other until something good is found; what was found, the best first."""
     tops: list[tuple[float, int, Candidate]] = []
+    spent = 0
     for k, problem in enumerate(searches):
         # Half of what is left, and the last one all of it: the first is the simplest, and most often enough.
-        left = budget - sum(other.work for other in searches)
-        verifying = _verified_steps(problem, frames, left if problem is searches[-1] else left // 2)
+        left = budget - spent
+        verifying = _verified_steps(problem, frames, left if problem is searches[-1] else max(1, left // 2))
         verified = yield from parallel.part(verifying, k / len(searches), (k + 1) / len(searches))
         tops += [(cost, k, candidate) for cost, candidate in verified]
-        if verified[0][0] < GOOD and verified[0][1].spotless:
+        spent = sum(other.work for other in searches)
+        if spent >= budget or (verified[0][0] < GOOD and verified[0][1].spotless):
             break
     tops.sort(key=lambda each: each[:2])
     return [(searches[k], candidate) for _, k, candidate in tops]

@@ -38,6 +38,9 @@ THINNEST = 0.02
 USUAL = 100
 """Pairs of pieces looked at for a pair of maps, beyond which a shape counts as several in the work."""
 
+GAPE = 8
+"""Shapes that one counts for whose gap is measured."""
+
 CHUNK = 4
 
 CHECKS = 2
@@ -216,7 +219,7 @@ def _score(
             while low < high and level < LEVELS.shape[0]:
                 _linear_parts(start, turn, sign, ends, at, LEVELS[level], linear)
                 decide_drift(desk, linear, translation, drift, along, tolerance, gapes, first, state, gap, labels)
-                work += max(1, desk.tree.used[1] // usual)
+                work += max(1, desk.tree.used[1] // usual) * (GAPE if gapes else 1)
                 if state[0] == CONNECTED or gap[0, 1] <= tolerated[sample]:
                     high = level
                 else:

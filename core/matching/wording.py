@@ -1,10 +1,11 @@
-"""Symmetries in words."""
+"""Symmetries in words, and words as they are written."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..affine import determinant
+from ..joining import Word
 from ..space.affine import axis_and_angle
 from .pairs import Symmetry
 
@@ -13,6 +14,11 @@ ROUND = 1e-3
 
 LARGEST = 5
 """Of the whole numbers by which an axis is named."""
+
+
+def word_text(word: Word) -> str:
+    """The letters of a word, counted from 1."""
+    return " ".join(str(letter + 1) for letter in word)
 
 
 def symmetry_text(symmetry: Symmetry | None) -> str:

@@ -29,7 +29,11 @@ def lift(ifs: IFS) -> SpaceIFS:
         If the shape is recurrent.
     """
     if ifs.is_recurrent:
-        raise IFSError("A shape some of whose maps never follow each other cannot be put into space.")
+        called = f"“{ifs.name}”" if ifs.name else "One shape"
+        raise IFSError(
+            f"{called} is recurrent, and no recurrent shape can become one in space; allow all its transitions, or "
+            "choose a shape of the plane for the other end."
+        )
     area = determinant(ifs.linear)
     maps = np.zeros((ifs.count, 3, 4))
     maps[:, :2, :2], maps[:, :2, 3] = ifs.linear, ifs.translation

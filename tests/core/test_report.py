@@ -138,4 +138,5 @@ def test_report_says_which_maps_flip():
     mirrored[2, 0, :2] *= -1
     report = plan_path(Morph(SHAPES["gasket"], IFS(mirrored)), frames=12, method="straight").report
     assert report.flips == (1, 2)
-    assert "map 2, 3." in report.text()
+    assert "map 2, map 3." in report.text()
+    assert "reflects: 1 to 2, 3 to 3." in report.text(names=["2 to 1", "1 to 2", "3 to 3"])

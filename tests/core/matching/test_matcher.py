@@ -242,6 +242,22 @@ def test_a_shape_becomes_itself_without_ado():
     assert found.report.spotless
 
 
+def test_a_budget_of_next_to_nothing_gives_something():
+    found = match(SHAPES["gasket"], SHAPES["pentigasket"], frames=12, budget=1)
+    assert len(found.pairs) >= 5
+    with pytest.raises(ValueError, match="must be 1 or more"):
+        match(SHAPES["gasket"], SHAPES["pentigasket"], budget=0)
+
+
+def test_flips_are_named_by_the_maps_that_flip():
+    mirrored = SHAPES["gasket"].maps.copy()
+    mirrored[1, 0, :2] *= -1
+    locked = (Pair((0,), (0,)), Pair((2,), (1,)), Pair((1,), (2,)))
+    found = match(SHAPES["terdragon"], IFS(mirrored), frames=12, locked=locked, budget=100)
+    assert found.report.flips == (1,)
+    assert "since only one end reflects: 3 to 2." in found.report.text()
+
+
 def test_it_can_be_stopped():
     with pytest.raises(Cancelled):
         match(SHAPES["gasket"], SHAPES["square"], progress=lambda share: share < 0.05)
