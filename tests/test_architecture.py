@@ -36,6 +36,7 @@ CORE = (
     "space",
     "deciding",
     "connectedness",
+    "tolerated",
     "locus",
     "report",
     "route",
