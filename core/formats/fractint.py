@@ -34,6 +34,8 @@ NAME_COMMENT = re.compile(r'\s*name:\s*(".*")\s*')
 ROUNDING = 0.1
 """How far from one the probabilities of an entry may sum, for they are often written with two decimals."""
 
+PERCENT = 100
+
 
 @dataclass
 class _Block:
@@ -182,7 +184,7 @@ def _columns(rows: list[list[float]], size: int) -> int | None:
 
     The count of all numbers decides where it can, unless each line is a map, some with a probability and some without.
     Where it fits both ways, probabilities that sum to one decide, then the lines, then probabilities that nearly sum to
-    one.
+    one. Some people write them in percent.
     """
     numbers = np.concatenate(rows)
     counts = {len(row) for row in rows}
@@ -191,7 +193,7 @@ def _columns(rows: list[list[float]], size: int) -> int | None:
         if len(numbers) % columns:
             return False
         last = numbers[columns - 1 :: columns]
-        return bool((last >= 0).all() and abs(last.sum() - 1) <= tolerance)
+        return bool((last >= 0).all() and min(abs(last.sum() - 1), abs(last.sum() / PERCENT - 1)) <= tolerance)
 
     if size == 6 and counts == {13} and not sums_to_one(7, 1e-6):
         return 13

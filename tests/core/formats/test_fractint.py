@@ -126,6 +126,9 @@ def test_probabilities_tell_where_neither_lines_nor_counts_do():
     table[:, 6] = [0.17, 0.17, 0.16, 0.17, 0.17, 0.16]
     words = " ".join(map(str, table.ravel()))
     assert only(f"a {{ {words} }}").count == 6
+    table[:, 6] = [17, 17, 16, 17, 15, 16]
+    entry = only(f"a {{ {' '.join(map(str, table.ravel()))} }}")
+    np.testing.assert_array_equal(entry.weights, table[:, 6])
     table[:, 6] = -0.25
     assert only(f"a {{ {' '.join(map(str, table.ravel()))} }}").count == 7
 
