@@ -58,7 +58,7 @@ def connectedness(ifs: IFS, tolerance: float = 1 / 300) -> Verdict:
     Parameters
     ----------
     ifs : IFS
-        In space, hidden maps count as if they were drawn.
+        In space, one with hidden maps is connected if the whole attractor is and what is drawn of it.
     tolerance : float
         Relative to the enclosing diameter; a gap below it may count as none.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from types import ModuleType
 
 import numpy as np
 
@@ -33,7 +32,7 @@ def column_steps(
     along : (V,)
         The translations of attractor k are ``start + along[k] * drift``.
     allowed : (N + 1, N) bool
-        See `IFS.allowed`. In space all letters follow all, and what is hidden counts as if it were drawn.
+        See `IFS.allowed`. In space all letters follow all.
     tolerance : float
         Relative to the enclosing diameter.
     with_gap : bool
@@ -49,14 +48,14 @@ def column_steps(
     """
     nodes, count = len(along), len(linear)
     state, gap, labels = np.empty(nodes, np.uint8), np.empty((nodes, 2)), np.empty((nodes, count), np.int64)
-    if not (allowed.all() or _in_space(start)):
+    if not allowed.all():
         for node in range(nodes):
             translation = start + along[node] * drift
             one = decide_frames(linear[None], translation[None], allowed[None], tolerance, with_gap)
             state[node], gap[node], labels[node] = (each[0] for each in one)
             yield
         return state, gap, labels
-    kernels = _kernels(start)
+    kernels = space_decision if _in_space(start) else decision
     desk, done = kernels.empty_desk(count), 0
     while done < nodes:
         done = kernels.decide_drift(
@@ -83,10 +82,14 @@ def decide_frames(
     -------
     As `column_steps`.
     """
+    tolerance, with_gap = float(tolerance), bool(with_gap)
+    if _in_space(translation):
+        drawn = np.ascontiguousarray(allowed[:, -1])
+        return space_decision.decide_each(linear, translation, drawn, tolerance, with_gap)
     # Two kernels, for few who use the one ever need the other, and compiling takes its time.
-    if not (allowed.all() or _in_space(translation)):
-        return decide_recurrent(linear, translation, allowed, float(tolerance), bool(with_gap))
-    return _kernels(translation).decide_each(linear, translation, float(tolerance), bool(with_gap))
+    if allowed.all():
+        return decision.decide_each(linear, translation, tolerance, with_gap)
+    return decide_recurrent(linear, translation, allowed, tolerance, with_gap)
 
 
 def are_connected(
@@ -103,10 +106,6 @@ def are_connected(
     with_gap = bool(np.any(tolerated > tolerance))
     state, gap, _ = decide_frames(linear, translation, allowed, tolerance, with_gap)
     return (state == CONNECTED) | (gap[:, 1] <= tolerated)
-
-
-def _kernels(translation: np.ndarray) -> ModuleType:
-    return space_decision if _in_space(translation) else decision
 
 
 def _in_space(translation: np.ndarray) -> bool:

@@ -44,7 +44,7 @@ def problem_of(
     initial: End, final: End, tolerance: float, locks: tuple[Lock, ...] = (), threads: int | None = None
 ) -> Problem:
     """The problem of two ends, of the kind that they need."""
-    # In space nothing is recurrent, and what is hidden counts as drawn.
+    # In space nothing is recurrent, and the search goes by whole attractors.
     plain = initial.ifs.DIMENSION == 3 or all(end.ifs.allowed.all() for end in (initial, final))
     kind = Problem if plain else RecurrentProblem
     return kind(initial, final, tolerance, locks, threads)

@@ -31,8 +31,8 @@ STEPS = 4
 POLYTOPE_PRECISION = 1e-3
 """The change at which the outer polytope is good enough, relative to the ball's radius."""
 
-Desk = namedtuple("Desk", "tree search first second key left right between order nearest reaches points")
-"""Work space, made once for many attractors."""
+Desk = namedtuple("Desk", "tree drawn search first second key left right between order nearest reaches points")
+"""Work space, made once for many attractors, and which attractorlets (N,) are drawn, all by default."""
 
 
 @njit(nogil=True, cache=True)
@@ -41,6 +41,7 @@ def empty_desk(count):
     pairs = max(1, count * (count - 1) // 2)
     return Desk(
         empty_tree(max(CAPACITY, min(count, MANY) * WORDS_A_MAP)),
+        np.ones(count, np.bool_),
         empty_search(count),
         np.empty(STACK, np.int32),
         np.empty(STACK, np.int32),
@@ -59,15 +60,18 @@ def empty_desk(count):
 def decide(desk, linear, areas, view, tolerance, labels):
     """State of one attractor, and in `labels` (N,) the component that each attractorlet is known to belong to.
 
+    Before, each has a label of its own, -1 if it does not count.
+
     The area certificate holds in any number of dimensions: `areas` (N,) are the volumes of the maps here.
     """
     tree, count = desk.tree, labels.shape[0]
     left, right, between, nearest = desk.left, desk.right, desk.between, desk.nearest
     known = 0
     for i in range(count):
-        labels[i] = i
         x, y, z = center(tree, i, view)
         for j in range(i + 1, count):
+            if min(labels[i], labels[j]) < 0:
+                continue
             p, q, r = center(tree, j, view)
             apart = math.sqrt((x - p) * (x - p) + (y - q) * (y - q) + (z - r) * (z - r))
             apart -= view.radius * (tree.word[i, NORM] + tree.word[j, NORM])
@@ -107,6 +111,16 @@ def decide(desk, linear, areas, view, tolerance, labels):
 
 
 @njit(nogil=True, cache=True)
+def decide_drawn(desk, linear, view, tolerance, labels):
+    """`decide` for what is drawn of an attractor that is connected, as all its attractorlets are then."""
+    for i in range(labels.shape[0]):
+        labels[i] = i if desk.drawn[i] else -1
+    # The certificate is for whole attractors.
+    none = np.zeros(labels.shape[0])
+    return CONNECTED if surely_one_piece(labels, none) else decide(desk, linear, none, view, tolerance, labels)
+
+
+@njit(nogil=True, cache=True)
 def find_polytope(desk, linear, view):
     """Write the reaches of the outer polytope, about the centre of the ball."""
     for i in range(linear.shape[0]):
@@ -139,7 +153,8 @@ def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, first, 
     areas = np.empty(count)
     for i in range(count):
         areas[i] = abs(determinant(linear[i]))
-    if first < nodes and surely_one_piece(labels[first], areas):
+    all_drawn = desk.drawn.all()
+    if first < nodes and all_drawn and surely_one_piece(labels[first], areas):
         for node in range(first, nodes):
             set_whole(node, 0.0, state, gap, labels)
         return nodes
@@ -175,6 +190,8 @@ def decide_drift(desk, linear, start, drift, along, tolerance, with_gap, first, 
             continue
         view = View(x, y, z, along[node], radius, SLACK * max(radius, abs(x) + abs(y) + abs(z)) + ROUNDING * largest)
         state[node] = decide(desk, linear, areas, view, tolerance, labels[node])
+        if state[node] == CONNECTED and not all_drawn:
+            state[node] = decide_drawn(desk, linear, view, tolerance, labels[node])
         if state[node] == CONNECTED:
             set_whole(node, tolerance, state, gap, labels)
         elif with_gap:
@@ -198,8 +215,8 @@ def find_points(desk, linear, translation, view):
 
 
 @njit(nogil=True, cache=True)
-def decide_each(linear, translation, tolerance, with_gap):
-    """Decide attractors of any maps; see `deciding.decide_frames`."""
+def decide_each(linear, translation, drawn, tolerance, with_gap):
+    """Decide attractors of any maps, of which the attractorlets `drawn` (F, N) are; see `deciding.decide_frames`."""
     frames, count = linear.shape[0], linear.shape[1]
     state, gap = np.empty(frames, np.uint8), np.empty((frames, 2))
     labels = np.empty((frames, count), np.int64)
@@ -207,6 +224,7 @@ def decide_each(linear, translation, tolerance, with_gap):
     drift, along, zero = np.zeros((count, 3)), np.zeros(1), np.int64(0)
     for k in range(frames):
         here = slice(k, k + 1)
+        desk.drawn[:] = drawn[k]
         decide_drift(
             desk,
             linear[k],
@@ -220,4 +238,9 @@ def decide_each(linear, translation, tolerance, with_gap):
             gap[here],
             labels[here],
         )
+        for i in range(count):
+            if not drawn[k, i]:
+                labels[k, i] = -1
+            elif state[k] == CONNECTED:
+                labels[k, i] = drawn[k].argmax()
     return state, gap, labels

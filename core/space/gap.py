@@ -43,7 +43,7 @@ def measure_gap(tree, view, tolerance, points, labels, search):
     points : (P, 3)
         On the attractor, about the centre of the ball.
     labels : (N,)
-        Components of attractorlets that are known to meet; written over.
+        Components of attractorlets that are known to meet, -1 for those that do not count; written over.
     search : Search
 
     Returns
@@ -56,7 +56,7 @@ def measure_gap(tree, view, tolerance, points, labels, search):
     for i in range(count):
         components += labels[i] == i
         for j in range(i + 1, count):
-            if labels[i] != labels[j]:
+            if labels[i] != labels[j] and min(labels[i], labels[j]) >= 0:
                 search.word[used, 0], search.word[used, 1] = i, j
                 search.end[used, 0], search.end[used, 1] = i, j
                 length = push_pair(tree, view, search, used, length, 0.0)

@@ -31,7 +31,7 @@ class SpaceIFS(IFS):
     transitions : None
         Maps of space follow each other freely.
     opacity : (N,), optional
-        As for `IFS`, but for certified connectedness all maps count as drawn.
+        As for `IFS`.
 
     Raises
     ------

@@ -13,7 +13,6 @@ from core.locus import compute_locus
 from core.morph import Morph
 from core.report import check_frames
 from core.shapes import SHAPES
-from core.space.shapes import SPACE_SHAPES
 from tests.core.reference import allowed_points, dense, groups_within
 
 CONNECTED, DISCONNECTED, UNDECIDED = Connectedness.CONNECTED, Connectedness.DISCONNECTED, Connectedness.UNDECIDED
@@ -170,11 +169,6 @@ def test_a_morph_that_hides_a_map_at_one_end_is_decided_as_it_is_drawn():
     behind[0, :2], behind[0, 4] = 0.5, -0.5
     assert check_frames(morph, behind).state.tolist() == [DISCONNECTED]
     assert not morph.at(np.array([0.5, 0, 0.5, 0.5]), 0.5).drawn[1]
-
-
-def test_in_space_what_is_hidden_counts_as_drawn():
-    whole = SPACE_SHAPES["Sierpinski tetrahedron"]
-    assert connectedness(replace(whole, opacity=[1, 0, 0, 1])).state == connectedness(whole).state == CONNECTED
 
 
 @pytest.mark.parametrize(

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,45 @@ def test_tetrahedra_are_connected_from_one_half_on(scale, state):
         gap = (1 - 2 * scale) / (2 * tetrahedron(scale).enclosing_ball[1])
         assert verdict.gap[0] <= gap * (1 + 1e-9)
         assert gap * (1 - 1e-9) <= verdict.gap[1] < 1.1 * gap
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_verdicts_on_what_is_drawn_agree_with_points(seed):
+    ifs = random_ifs(seed, 4 + seed % 2, 0.5, 0.8, 1.0)
+    drawn = np.random.default_rng(seed).random(ifs.count) < 0.5
+    drawn[seed % ifs.count] = True
+    whole, part = connectedness(ifs), connectedness(replace(ifs, opacity=drawn))
+    points, letters, spacing = dense(ifs.maps)
+    groups = np.cumsum(drawn)[letters] - 1
+    shown = drawn[letters]
+    edge = longest_edge(points[shown], groups[shown], drawn.sum()) if drawn.sum() > 1 else 0.0
+    diameter = 2 * ifs.enclosing_ball[1]
+    if whole.state != CONNECTED:
+        assert part.state == whole.state
+    elif part.state == CONNECTED:
+        assert edge - 2 * spacing <= diameter / 300
+        assert part.components.tolist() == np.where(drawn, drawn.argmax(), -1).tolist()
+    elif part.state == DISCONNECTED:
+        assert part.gap[0] > 0
+        assert part.gap[0] * diameter <= edge + 1e-9
+        assert part.gap[1] * diameter >= edge - 2 * spacing - 1e-9
+    assert np.array_equal(part.components < 0, ~drawn)
+
+
+def test_only_what_is_drawn_of_a_sponge_has_to_hang_together():
+    """The corners of a cube, with the edges between them hidden; and one face, which is a carpet."""
+    cells = np.array(SPONGE)
+    sponge = similarities(1 / 3, cells / 2)
+    corners, face = (cells != 1).all(axis=1), cells[:, 0] == 0
+    for drawn, state in ((corners, DISCONNECTED), (face, CONNECTED), (face | corners, DISCONNECTED)):
+        part = replace(sponge, opacity=drawn)
+        assert connectedness(part).state == state
+        locus = compute_locus(SpaceMorph(part, part), 2, domain=(0, 1))
+        assert (locus.state == state).all()
+        assert check_frames(SpaceMorph(part, sponge), np.array([[0, 0, 0], [1, 1, 0]])).state.tolist() == [
+            state,
+            CONNECTED,
+        ]
 
 
 def test_a_sponge_is_connected_and_its_cells_pulled_apart_are_not():
