@@ -114,6 +114,7 @@ class Morph:
             raise IFSError(f"Winding must be {initial.count} whole numbers of turns, one a map.")
         self.initial, self.final, self.part_of = over_one_graph(initial, final)
         self.shapes = initial, final
+        self._opaque = all((ifs.opacity == 1).all() for ifs in (initial, final))
         self.scheme, self.winding = scheme, winding.astype(int)[self.part_of]
         return self.winding
 
@@ -148,7 +149,8 @@ class Morph:
         maps = np.concatenate([linear, translation[..., None]], axis=-1)
         plain = self.initial.transitions is self.final.transitions is None
         transitions = None if plain else self.transitions_at(np.mean(u))
-        return type(self.initial)(maps, self.weights_at(u), transitions=transitions, opacity=self.opacity_at(u))
+        opacity = None if self._opaque else self.opacity_at(u)
+        return type(self.initial)(maps, self.weights_at(u), transitions=transitions, opacity=opacity)
 
     def linear(self, u: np.ndarray | float, swell: np.ndarray | float = 0.0) -> np.ndarray:
         """Linear parts (..., N, 2, 2) for `u` and `swell` that broadcast to (..., N)."""

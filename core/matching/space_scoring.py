@@ -116,8 +116,9 @@ def _least(
     while (still := (low < high) & (level < levels)).any():
         swell = np.repeat(LEVELS[np.minimum(level, levels - 1)], morph.count // count, axis=1)
         linear = morph.linear(times[:, None], swell).reshape(*translation.shape[:3], 9)
-        follows = np.ones((len(still), *translation.shape[2:3] * 2), dtype=bool)
-        state, gap, _ = decide_frames(linear[still], translation[still], follows, tolerance, with_gap)
+        chosen = linear[still]
+        allowed = np.ones((len(chosen), chosen.shape[1] + 1, chosen.shape[1]), dtype=bool)
+        state, gap, _ = decide_frames(chosen, translation[still], allowed, tolerance, with_gap)
         work += int(np.where(state == UNDECIDED, UNDECIDED_EFFORT, EFFORT).sum())
         whole = np.zeros_like(still)
         whole[still] = (state == CONNECTED) | (gap[:, 1] <= tolerated[still])
