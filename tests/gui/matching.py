@@ -72,6 +72,11 @@ def working():
     return any(operator.bl_idname.startswith("IFS_MORPH") for operator in window().modal_operators)
 
 
+def undo():
+    with bpy.context.temp_override(window=window(), area=viewport(), region=region()):
+        bpy.ops.ed.undo()
+
+
 def words():
     return [(item.initial, item.final) for item in settings().matching.pairs]
 
@@ -138,14 +143,36 @@ def steps():
     yield
     picture("7_split_turned_wound_locked")
     for _ in range(4):
-        with bpy.context.temp_override(window=window(), area=viewport(), region=region()):
-            bpy.ops.ed.undo()
+        undo()
         yield
     assert words() == before
+
+    # Pairs by hand; each press is one step of undo.
+    operators, history = bpy.ops.ifs_morph, [before]
+    for operator, options in (
+        (operators.pair_split, {"end": "INITIAL"}),
+        (operators.pair_join, {"end": "INITIAL"}),
+        (operators.pair_add, {}),
+        (operators.pair_remove, {}),
+        (operators.clear_pairs, {}),
+        (operators.pair_add, {}),
+    ):
+        press(operator, **options)
+        yield
+        history.append(words())
+    picture("8_begun_by_hand")
+    assert history[1] != before == history[2] == history[4]
+    assert len(history[3]) == len(before) + 1
+    assert history[5:] == [[], [("1", "1"), ("2", "2"), ("3", "3"), ("4", "1")]]
+    while len(history) > 1:
+        history.pop()
+        undo()
+        yield
+        assert words() == history[-1]
     press(bpy.ops.ifs_morph.map_remove, end="FINAL")
     yield
     yield from scroll("WHEELUPMOUSE", 12)
-    picture("8_no_longer_fit")
+    picture("9_do_not_fit")
 
 
 def tick(running=steps()):  # noqa: B008 -- one run of the steps, kept between the calls
