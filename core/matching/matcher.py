@@ -15,7 +15,7 @@ from ..joining import Word
 from ..locus import compute_locus_steps
 from ..morph import Morph, spread
 from ..path import Path, plan_path_steps
-from ..report import check_frames_steps
+from ..report import FrameCheck, check_frames_steps
 from ..space.lifting import in_one_space
 from .account import MatchReport
 from .constraints import locks_of, settled_words
@@ -42,8 +42,11 @@ PLANNED = 2
 DEFAULT_SCHEMES = ("polar", "log-polar")
 """Tried where none is asked for; the second with the best candidate only."""
 
-PLANNED_MAPS = 16
-"""With more maps than this a plan takes too long, and gains little over the straight line."""
+PLANNED_MAPS = {2: 16, 3: 9}
+"""With more maps than this a plan takes too long, by dimensions."""
+
+HARD = 0.1
+"""Share of the frames of the naive morph that may be undecided; with more of them a plan in space takes too long."""
 
 RECURRENT_MAPS = 2
 """Maps that one of a recurrent morph counts for in that, for they take longer to decide."""
@@ -263,10 +266,9 @@ def match_steps(
             if scheme is not None:
                 raise
             continue
-        plannable = whole and morph.count * (RECURRENT_MAPS if morph.is_recurrent else 1) <= PLANNED_MAPS
-        # In space the rest takes too long.
-        passed_by = morph.DIMENSION == 3 and (method == "per map" or chosen != schemes[0])
-        if passed_by or (method != "straight" and not plannable):
+        if method != "straight" and not (whole and _is_plannable(morph, method, polar)):
+            continue
+        if morph.DIMENSION == 3 and chosen != schemes[0]:
             continue
         at = 0.7 + 0.3 * rank / len(plans)
         planning = _planned_steps(morph, frames, tolerance, method, threads)
@@ -295,6 +297,15 @@ def _searched_steps(
             break
     tops.sort(key=lambda each: each[:2])
     return [(searches[k], candidate) for _, k, candidate in tops]
+
+
+def _is_plannable(morph: Morph, method: str, naive: FrameCheck) -> bool:
+    """Whether a plan takes no longer than people wait."""
+    maps = morph.count * (RECURRENT_MAPS if morph.is_recurrent else 1)
+    if maps > PLANNED_MAPS[morph.DIMENSION]:
+        return False
+    hard = naive.count(Connectedness.UNDECIDED) > HARD * len(naive.state)
+    return morph.DIMENSION == 2 or (method == "planned" and not hard)
 
 
 def _planned_steps(

@@ -23,7 +23,7 @@ CHUNK = 8
 CHECKS = 1
 """Times a frame at which what was found is checked."""
 
-EFFORT, UNDECIDED_EFFORT = 20, 200
+EFFORT, UNDECIDED_EFFORT = 20, 80
 """How many times the work of a shape of the plane one in space is, and one that stays undecided."""
 
 TRIED = np.append(LEVELS, NEVER)
