@@ -31,6 +31,8 @@ __all__ = [
 
 SUFFIXES = (".ifs", ".flame", ".flam3")
 
+FLAME = re.compile(r"<\s*(jwf-)?(flame|xform|finalxform)\b", re.IGNORECASE)
+
 LARGEST_FILE = 64 * 2**20
 """Bytes beyond which a file is surely something else."""
 
@@ -53,7 +55,9 @@ def read_text(text: str, name: str = "unnamed") -> Reading:
     """
     if not text.strip():
         raise FormatError("There is no text; copy the entries of an .ifs file or a flame first.")
-    if re.search(r"<\s*(jwf-)?(flame|xform|finalxform)\b", text, re.IGNORECASE):
+    # A comment of an .ifs file may speak of flames, and an entity of a flame ends like a comment begins.
+    code = re.sub(r";[^\r\n]*", "", text)
+    if FLAME.search(code) or (code.lstrip("\ufeff \t\r\n").startswith("<") and FLAME.search(text)):
         return read_flames(text)
     return read_ifs(text, name)
 

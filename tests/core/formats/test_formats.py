@@ -162,6 +162,16 @@ def test_files_that_cannot_be_read(tmp_path):
         read_file(tmp_path / "empty.ifs")
 
 
+@pytest.mark.parametrize("comment", ["; converted from a <flame> file\n{}", "{}; no <xform>\r", "{}"])
+def test_comments_that_speak_of_flames(comment):
+    text = FERN.replace("{", "{ ; was a <flame>") if comment == "{}" else comment.format(FERN)
+    assert list(read_text(text).shapes) == ["fern"]
+
+
+def test_entities_before_a_flame_in_one_line():
+    assert list(read_text('<a b="&amp;">' + FLAM3.replace("\n", " ")).shapes) == ["flame 1"]
+
+
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 8
 
 
