@@ -305,7 +305,8 @@ def write_shape(shape, ifs: IFS) -> None:
 def _resize(maps, count: int) -> None:
     while len(maps) > count:
         try:
-            maps.remove(len(maps) - 1)
+            # Those of a library come first in an override, so that this fails before any is gone.
+            maps.remove(count)
         except TypeError as error:
             raise IFSError(
                 f"This library override has {len(maps)} maps from its library and cannot have {count}; "

@@ -142,3 +142,16 @@ def test_overrides_have_settings_and_outputs_of_their_own(library, blend, kind):
     assert owner.ifs_morph.locus.image is not None
     assert content(owner) == changed
     assert content(next(thing for thing in morphs() if thing.library)) == expected
+
+
+def test_maps_of_an_override_stay_when_a_shape_has_too_few(library):
+    linked, _ = load(library, "POINTS", link=True)
+    owner = linked.override_create(remap_local_usages=False)
+    bpy.context.scene.collection.objects.link(owner)
+    activate(owner)
+    for scale in (0.25, 0.125):
+        owner.ifs_morph.initial.maps.add().matrix = ((scale, 0, 0), (0, scale, 0))
+    before = [[tuple(row) for row in item.matrix] for item in owner.ifs_morph.initial.maps]
+    with pytest.raises(RuntimeError, match="make the object local"):
+        bpy.ops.ifs_morph.load_shape(end="INITIAL", shape="Hata tree")
+    assert [[tuple(row) for row in item.matrix] for item in owner.ifs_morph.initial.maps] == before
