@@ -128,6 +128,52 @@ def remove_offsets(owner) -> None:
     owner.ifs_morph.offset_u = owner.ifs_morph.offset_v = (0.0,) * MOST_OFFSETS
 
 
+def rearrange_offsets(owner, origins) -> None:
+    """Have row k of the morph go where row ``origins[k]`` went, or with all others where that is None.
+
+    What cannot be written, as of a linked action, stays as it is.
+    """
+    curves = path_curves(owner, OFFSET_CHANNELS)
+    rows = owner.ifs_morph.offset_u, owner.ifs_morph.offset_v
+    if obstacle(owner) or not (any(curves) or any(rows[0]) or any(rows[1])):
+        return
+    origins = [None if origin is None or origin >= MOST_OFFSETS else origin for origin in origins][:MOST_OFFSETS]
+    still = [[0.0 if origin is None else row[origin] for origin in origins] for row in rows]
+    keys = [[] if curve is None else [_stored(point) for point in curve.keyframe_points] for curve in curves]
+    remove_offsets(owner)
+    for axis, values in enumerate(still):
+        setattr(owner.ifs_morph, f"offset_{'uv'[axis]}", values + [0.0] * (MOST_OFFSETS - len(values)))
+        for k, origin in enumerate(origins):
+            if origin is not None and keys[axis * MOST_OFFSETS + origin]:
+                curve = compat.ensure_fcurve(owner, *OFFSET_CHANNELS[axis * MOST_OFFSETS + k])
+                _restore(curve, keys[axis * MOST_OFFSETS + origin])
+
+
+KEY_PROPERTIES = (
+    "interpolation",
+    "easing",
+    "handle_left_type",
+    "handle_right_type",
+    "co",
+    "handle_left",
+    "handle_right",
+)
+"""What a key stores, in the order in which it is to be set."""
+
+
+def _stored(point) -> list:
+    return [value if isinstance(value, str) else tuple(value) for value in map(point.__getattribute__, KEY_PROPERTIES)]
+
+
+def _restore(curve, stored) -> None:
+    curve.keyframe_points.clear()
+    curve.keyframe_points.add(len(stored))
+    for point, values in zip(curve.keyframe_points, stored, strict=True):
+        for name, value in zip(KEY_PROPERTIES, values, strict=True):
+            setattr(point, name, value)
+    curve.update()
+
+
 def _remove(owner, channels) -> None:
     curves = compat.fcurves(owner)
     for curve in path_curves(owner, channels):

@@ -232,17 +232,23 @@ def write(matching, pairs: Sequence[Pair], locked: Sequence[bool]) -> None:
     matching.active_index = max(0, min(matching.active_index, len(pairs) - 1))
 
 
-def append(matching, initial: IFS, final: IFS) -> None:
-    """Add a pair of what is in none yet, and make it the active one; an end that lacks nothing is the active pair's."""
-    like = _values(matching.pairs[max(0, min(matching.active_index, len(matching.pairs) - 1))])
-    values = {**like, "locked": False}
+def append(matching, initial: IFS, final: IFS) -> int | None:
+    """Add a pair of what is in none yet, and make it the active one; an end that lacks nothing is the active pair's.
+
+    Returns the number of the pair that was doubled, if nothing was missing.
+    """
+    active = max(0, min(matching.active_index, len(matching.pairs) - 1))
+    like = _values(matching.pairs[active])
+    values, doubled = {**like, "locked": False}, active
     for k, (end, ifs) in enumerate((("initial", initial), ("final", final))):
         missing = uncovered(ifs, _words(matching, end, ifs.count))
         if missing:
+            doubled = None
             values |= {end: text_of(missing[0]), "winding": 0}
             values |= {names[k]: no_symmetry(dimension) for dimension, names in SYMMETRIES.items()}
     _fill(matching.pairs.add(), values)
     matching.active_index = len(matching.pairs) - 1
+    return doubled
 
 
 def _words(matching, end: str, count: int) -> list[tuple[int, ...]]:

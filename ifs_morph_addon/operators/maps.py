@@ -3,6 +3,7 @@
 import bpy
 
 from ..conversion import MOST_RECURRENT, fit_window
+from ..fcurves import rearrange_offsets
 from ..pairs import exchange_maps
 from ..property_options import window_held
 from .poll import ENDS, editable_morph, shape_of
@@ -32,6 +33,11 @@ class _MapOperator:
         fit_window(context.object)
         context.object.update_tag()
         return {"FINISHED"}
+
+    def have_paths_follow(self, owner, origins) -> None:
+        """Have initial maps keep paths of their own where the list changes; with pairs it is these that have them."""
+        if self.end == "INITIAL" and len(owner.ifs_morph.matching.pairs) == 0:
+            rearrange_offsets(owner, origins)
 
 
 def reorder_transitions(shape, change) -> None:
@@ -64,7 +70,9 @@ class IFSMORPH_OT_map_remove(_MapOperator, bpy.types.Operator):
         """Remove the active map; the one after it becomes active."""
         if not 0 <= shape.active_index < len(shape.maps):
             return "There is no active map to remove."
+        rows = [k for k in range(len(shape.maps)) if k != shape.active_index]
         shape.maps.remove(shape.active_index)
+        self.have_paths_follow(shape.id_data, rows)
         reorder_transitions(shape, lambda row: [*row[: shape.active_index], *row[shape.active_index + 1 :], 1.0])
         shape.active_index = max(0, min(shape.active_index, len(shape.maps) - 1))
         return None
@@ -91,6 +99,8 @@ class IFSMORPH_OT_map_duplicate(_MapOperator, bpy.types.Operator):
         except TypeError:
             pass  # In a library override the copy stays at the end.
         reorder_transitions(shape, lambda row: [*row[:place], *row[index : index + 1], *row[place:-1]])
+        rows = list(range(len(shape.maps) - 1))
+        self.have_paths_follow(shape.id_data, [*rows[:place], index, *rows[place:]])
         return None
 
 
@@ -121,6 +131,9 @@ class IFSMORPH_OT_map_move(_MapOperator, bpy.types.Operator):
         owner = shape.id_data
         with window_held(owner):
             exchange_maps(owner.ifs_morph.matching, self.end.lower(), index, target)
+            rows = list(range(len(shape.maps)))
+            rows[index], rows[target] = target, index
+            self.have_paths_follow(owner, rows)
         return None
 
 

@@ -9,6 +9,7 @@ from ...core.matching import BUDGET, match_steps
 from ...core.morph import SCHEMES
 from .. import pairs
 from ..conversion import core_name, flip_of, identifier, pixel, shapes_of, tolerance
+from ..fcurves import rearrange_offsets
 from ..property_options import window_held
 from ..tasks import LongTask
 from .path import key_path, keying_problem, tell
@@ -25,6 +26,8 @@ class _Match(LongTask):
 
     best = None
     """The best match so far."""
+    locked = 0
+    """Pairs that it was to keep; every match begins with them."""
 
     @property
     def on_escape(self):
@@ -44,6 +47,7 @@ class _Match(LongTask):
                 problem = pairs.problem(initial, final, settings.matching)
                 raise IFSError(f"Locked pairs do not fit the maps; unlock them, or Clear Pairs. {problem}")
             locked = tuple(pair for pair, item in zip(fitted, settings.matching.pairs, strict=True) if item.locked)
+            self.locked = len(locked)
         best = yield from match_steps(
             initial,
             final,
@@ -75,8 +79,7 @@ class _Match(LongTask):
     def _keep(self, context, match):
         owner = context.object
         matching = owner.ifs_morph.matching
-        held = {(item.initial, item.final) for item in matching.pairs if item.locked}
-        locks = tuple((pairs.text_of(pair.initial), pairs.text_of(pair.final)) in held for pair in match.pairs)
+        locks = tuple(k < self.locked for k in range(len(match.pairs)))
         with window_held(owner):
             pairs.write(matching, match.pairs, locks)
             if _is_open(owner.ifs_morph):
@@ -120,7 +123,7 @@ class IFSMORPH_OT_morph(_Match, bpy.types.Operator):
 
 
 class IFSMORPH_OT_match_pairs(_Match, bpy.types.Operator):
-    """Pair the maps of any two shapes so that as little as can be breaks on the way; the keys stay as they are"""
+    """Pair the maps so that as little as can be breaks on the way. Keys stay, but for paths that maps have alone"""
 
     bl_idname = "ifs_morph.match_pairs"
     bl_label = "Match Pairs"
@@ -128,7 +131,8 @@ class IFSMORPH_OT_match_pairs(_Match, bpy.types.Operator):
     poll = classmethod(matchable_morph)
 
     def keep(self, owner, match):
-        """Leave the keys as they are."""
+        """Leave the keys as they are, but for paths that maps had of their own: these belong to other pairs."""
+        rearrange_offsets(owner, ())
         return match.report
 
     def say(self, settings, report):

@@ -8,6 +8,7 @@ from ...core.ifs import IFSError
 from ...core.matching.expansion import parts
 from .. import pairs
 from ..conversion import shapes_of
+from ..fcurves import rearrange_offsets
 from ..property_options import window_held
 from .poll import ENDS, editable_morph
 
@@ -53,12 +54,18 @@ def _require_few(count: int) -> None:
 
 class _PairOperator(_ListOperator):
     def edit(self, settings):
-        """Change the pairs and their locks by `change`, which returns the number of the pair that is active then."""
+        """Change the pairs by `change`; their locks and paths follow.
+
+        It is given the pairs, the rows that they come from, and the number of the active one, changes both lists, and
+        returns the number of the pair that is active then.
+        """
         matching = settings.matching
         listed, locks = list(pairs.stored(matching)), [item.locked for item in matching.pairs]
+        origins = list(range(len(listed)))
         _require_active(matching)
-        active = self.change(settings, listed, locks, matching.active_index)
-        pairs.write(matching, listed, locks)
+        active = self.change(settings, listed, origins, matching.active_index)
+        pairs.write(matching, listed, [locks[origin] for origin in origins])
+        rearrange_offsets(settings.id_data, origins)
         matching.active_index = active
 
 
@@ -80,7 +87,9 @@ class IFSMORPH_OT_pair_add(_ListOperator, bpy.types.Operator):
             pairs.write(matching, listed, [False] * len(listed))
             return
         _require_few(len(matching.pairs) + 1)
-        pairs.append(matching, initial, final)
+        rows = list(range(len(matching.pairs)))
+        doubled = pairs.append(matching, initial, final)
+        rearrange_offsets(settings.id_data, [*rows, doubled])
 
 
 class IFSMORPH_OT_pair_remove(_ListOperator, bpy.types.Operator):
@@ -91,8 +100,11 @@ class IFSMORPH_OT_pair_remove(_ListOperator, bpy.types.Operator):
 
     def edit(self, settings):
         """Remove the active pair; the one after it becomes active."""
-        _require_active(settings.matching)
-        pairs.remove(settings.matching, settings.matching.active_index)
+        matching = settings.matching
+        _require_active(matching)
+        index, count = matching.active_index, len(matching.pairs)
+        pairs.remove(matching, index)
+        rearrange_offsets(settings.id_data, [k for k in range(count) if k != index])
 
 
 class IFSMORPH_OT_pair_swap(_PairOperator, bpy.types.Operator):
@@ -107,7 +119,7 @@ class IFSMORPH_OT_pair_swap(_PairOperator, bpy.types.Operator):
         items=(("UP", "Up", "The pair above"), ("DOWN", "Down", "The pair below")),
     )
 
-    def change(self, settings, listed, locks, active):
+    def change(self, settings, listed, origins, active):
         """Swap the final words with their symmetries; the other pair becomes the active one."""
         other = active + (-1 if self.direction == "UP" else 1)
         if not 0 <= other < len(listed):
@@ -126,7 +138,7 @@ class IFSMORPH_OT_pair_symmetry(_PairOperator, bpy.types.Operator):
 
     end: bpy.props.EnumProperty(name="End", description="Whose symmetry to change", items=ENDS)
 
-    def change(self, settings, listed, locks, active):
+    def change(self, settings, listed, origins, active):
         """Go on to the next symmetry, and from the last one to none."""
         shape, field = shapes_of(settings)[self.end == "FINAL"], f"{self.end.lower()}_symmetry"
         following = pairs.next_symmetry(shape, getattr(listed[active], field))
@@ -142,7 +154,7 @@ class IFSMORPH_OT_pair_split(_PairOperator, bpy.types.Operator):
 
     end: bpy.props.EnumProperty(name="End", description="Which map of the pair to split", items=ENDS)
 
-    def change(self, settings, listed, locks, active):
+    def change(self, settings, listed, origins, active):
         """Put the pairs of the parts where the first pair of the map was."""
         shape = shapes_of(settings)[self.end == "FINAL"]
         field = self.end.lower()
@@ -159,11 +171,11 @@ class IFSMORPH_OT_pair_split(_PairOperator, bpy.types.Operator):
             )
             for k in range(max(len(words), len(sharing)))
         ]
-        part_locks = [locks[sharing[k % len(sharing)]] for k in range(len(split))]
         for k in reversed(sharing):
-            del listed[k], locks[k]
+            del listed[k], origins[k]
         first = sharing[0]
-        listed[first:first], locks[first:first] = split, part_locks
+        listed[first:first] = split
+        origins[first:first] = [sharing[k % len(sharing)] for k in range(len(split))]
         return first
 
 
@@ -175,7 +187,7 @@ class IFSMORPH_OT_pair_join(_PairOperator, bpy.types.Operator):
 
     end: bpy.props.EnumProperty(name="End", description="Which map of the pair to put together again", items=ENDS)
 
-    def change(self, settings, listed, locks, active):
+    def change(self, settings, listed, origins, active):
         """Put the whole map into the pairs of its parts."""
         field = self.end.lower()
         word = getattr(listed[active], field)
@@ -186,7 +198,7 @@ class IFSMORPH_OT_pair_join(_PairOperator, bpy.types.Operator):
         unturned = {field: whole, f"{field}_symmetry": pairs.IDENTITY}
         changed = [replace(pair, **unturned) if part else pair for pair, part in zip(listed, joined, strict=True)]
         kept = [k for k, pair in enumerate(changed) if not (joined[k] and pair in changed[:k])]
-        listed[:], locks[:] = [changed[k] for k in kept], [locks[k] for k in kept]
+        listed[:], origins[:] = [changed[k] for k in kept], kept
         return listed.index(changed[active])
 
 
@@ -219,8 +231,9 @@ class IFSMORPH_OT_clear_pairs(_ListOperator, bpy.types.Operator):
     bl_label = "Clear Pairs"
 
     def edit(self, settings):
-        """Remove the pairs."""
+        """Remove the pairs, and the paths of their own that they had."""
         pairs.write(settings.matching, (), ())
+        rearrange_offsets(settings.id_data, ())
 
 
 CLASSES = (
