@@ -89,7 +89,7 @@ def decide_frames(
     # Two kernels, for few who use the one ever need the other, and compiling takes its time.
     if allowed.all():
         return decision.decide_each(linear, translation, tolerance, with_gap)
-    return decide_recurrent(linear, translation, allowed, tolerance, with_gap)
+    return decide_recurrent(linear, translation, np.ascontiguousarray(allowed), tolerance, with_gap)
 
 
 def are_connected(
