@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..core.ifs import IFS, IFSError
-from ..core.matching import Pair, morph_of_pairs, symmetry_text
+from ..core.matching import Pair, morph_of_pairs, symmetry_text, word_text
 from ..core.matching.expansion import uncovered
 from ..core.matching.pairs import IDENTITY, as_map
 from ..core.matching.symmetry import symmetries
@@ -96,12 +96,7 @@ def word_of(text: str) -> tuple[int, ...]:
 def require_word(ifs: IFS, word: tuple[int, ...]) -> None:
     """Raise IFSError unless a shape has the maps of a word."""
     if max(word) >= ifs.count:
-        raise IFSError(f"“{text_of(word)}” is no map of a shape that has {ifs.count}.")
-
-
-def text_of(word: tuple[int, ...]) -> str:
-    """Text of a word."""
-    return " ".join(str(letter + 1) for letter in word)
+        raise IFSError(f"“{word_text(word)}” is no map of a shape that has {ifs.count}.")
 
 
 def _rows(matrix) -> tuple:
@@ -225,7 +220,7 @@ def write(matching, pairs: Sequence[Pair], locked: Sequence[bool]) -> None:
         collection.add()
     dimension = _dimension(matching)
     for item, pair, lock in zip(collection, pairs, locked, strict=True):
-        values = {"initial": text_of(pair.initial), "final": text_of(pair.final)}
+        values = {"initial": word_text(pair.initial), "final": word_text(pair.final)}
         for name, symmetry in zip(SYMMETRIES[dimension], (pair.initial_symmetry, pair.final_symmetry), strict=True):
             values[name] = no_symmetry(dimension) if symmetry in (None, IDENTITY) else symmetry
         _fill(item, {**values, "winding": pair.winding or 0, "locked": lock})
@@ -244,7 +239,7 @@ def append(matching, initial: IFS, final: IFS) -> int | None:
         missing = uncovered(ifs, _words(matching, end, ifs.count))
         if missing:
             doubled = None
-            values |= {end: text_of(missing[0]), "winding": 0}
+            values |= {end: word_text(missing[0]), "winding": 0}
             values |= {names[k]: no_symmetry(dimension) for dimension, names in SYMMETRIES.items()}
     _fill(matching.pairs.add(), values)
     matching.active_index = len(matching.pairs) - 1
@@ -283,7 +278,7 @@ def exchange_maps(matching, end: str, first: int, second: int) -> None:
             word = word_of(getattr(item, end))
         except IFSError:
             continue  # It names no map.
-        setattr(item, end, text_of(tuple(places.get(letter, letter) for letter in word)))
+        setattr(item, end, word_text(tuple(places.get(letter, letter) for letter in word)))
 
 
 def _values(item) -> dict:

@@ -7,7 +7,7 @@ symmetries of the shapes, splits and doublings of their maps make them so, and a
 from .account import MatchReport
 from .matcher import BUDGET, Match, match, match_steps
 from .pairs import Pair, morph_of_pairs, pairs_from_plain, pairs_to_plain
-from .wording import symmetry_text
+from .wording import symmetry_text, word_text
 
 __all__ = [
     "BUDGET",
@@ -20,4 +20,5 @@ __all__ = [
     "pairs_from_plain",
     "pairs_to_plain",
     "symmetry_text",
+    "word_text",
 ]

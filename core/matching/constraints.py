@@ -11,6 +11,7 @@ from ..joining import Word
 from .expansion import is_cover, parts
 from .pairs import Pair, Symmetry, as_map
 from .problem import Lock
+from .wording import word_text
 
 SAME = 1e-6
 """Two symmetries whose entries differ by less than this, in units of the shape, are one."""
@@ -35,14 +36,15 @@ def settled_words(ifs: IFS, name: str, words: Sequence[Word] | None, locked: Seq
         while split := [word for word in words if word in prefixes]:
             at = words.index(split[0])
             words[at : at + 1] = parts(ifs, words[at])
-    words = [tuple(int(letter) for letter in word) for word in dict.fromkeys(map(tuple, words))]
-    if any(not word or min(word) < 0 or max(word) >= ifs.count for word in words) or not is_cover(ifs, words):
+    words = [tuple(int(letter) for letter in word) for word in words]
+    named = all(word and min(word) >= 0 and max(word) < ifs.count for word in words)
+    if not named or len(set(words)) < len(words) or not is_cover(ifs, words):
         raise IFSError(f"The words given for the {name} shape are not all of its pieces, each once; give every piece.")
     for word in locked:
         if tuple(word) not in words:
-            called = " ".join(str(letter + 1) for letter in word)
             raise IFSError(
-                f"A locked pair uses the piece {called} of the {name} shape, which is split further or not at all."
+                f"A locked pair uses the piece {word_text(word)} of the {name} shape, which is split further or not at "
+                "all."
             )
     return words
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import bpy
 
 from ...core.ifs import IFSError
+from ...core.matching import word_text
 from ...core.matching.expansion import parts
 from .. import pairs
 from ..conversion import shapes_of
@@ -193,7 +194,7 @@ class IFSMORPH_OT_pair_join(_PairOperator, bpy.types.Operator):
         word = getattr(listed[active], field)
         whole = word[:-1]
         if not whole:
-            raise IFSError(f"“{pairs.text_of(word)}” is no part of a map that was split, so there is nothing to join.")
+            raise IFSError(f"“{word_text(word)}” is no part of a map that was split, so there is nothing to join.")
         joined = [getattr(pair, field)[: len(whole)] == whole for pair in listed]
         unturned = {field: whole, f"{field}_symmetry": pairs.IDENTITY}
         changed = [replace(pair, **unturned) if part else pair for pair, part in zip(listed, joined, strict=True)]

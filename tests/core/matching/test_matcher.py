@@ -197,6 +197,7 @@ def test_splits_can_be_settled():
         ({"locked": [Pair((0,), (0,)), Pair((0, 1), (0,))]}, "split further"),
         ({"locked": [Pair((0,), (0,), ((0, 1, 0), (1, 0, 0)))]}, "no symmetry"),
         ({"final_words": [(0,), (1, 1)]}, "every piece"),
+        ({"final_words": [(0,), (0,), (1,), (2,)]}, "each once"),
     ],
 )
 def test_what_cannot_be_kept_is_said(constraint, message):
