@@ -354,7 +354,7 @@ def _verified_steps(
 ) -> Generator[float, None, list[tuple[float, Candidate]]]:
     """Search, check densely, and search on with the times that the samples had missed; the best and their costs."""
     begun = problem.work
-    checks = max(2, problem.scoring.CHECKS * (frames - 1))
+    checks = max(2, round(problem.scoring.CHECKS * (frames - 1)))
     times = np.arange(1, checks) / checks
     kept: list[tuple[float, Candidate]] = []
     start = None

@@ -20,7 +20,7 @@ from .scoring import FLIP, KEEP, LEVELS, MEAN, NEVER, THINNEST, TURNING, WORST
 CHUNK = 8
 """Candidates looked at together."""
 
-CHECKS = 1
+CHECKS = 1 / 3
 """Times a frame at which what was found is checked."""
 
 EFFORT, UNDECIDED_EFFORT = 20, 80
