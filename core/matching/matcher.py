@@ -195,7 +195,7 @@ def match_steps(
     def swell_of(path: Path | None) -> tuple[float, float] | None:
         return None if path is None else (path.report.path.most_swell, path.report.path.mean_swell)
 
-    def offer(pairs: tuple[Pair, ...], morph: Morph, path: Path, cost_beside: float, work: int = 0) -> None:
+    def offer(pairs: tuple[Pair, ...], morph: Morph, path: Path, cost_beside: float, work: int = 0) -> Match:
         """Take what was found if it is the best yet, and tell of it."""
         nonlocal best
         report = MatchReport(
@@ -214,6 +214,7 @@ def match_steps(
             best = new
             if found is not None:
                 found(best)
+        return new
 
     # The simplest that the user's choices allow, so that there is something at once.
     given = problem_of(*ends, tolerance, locks_of(locked, ends), threads)
@@ -251,6 +252,7 @@ def match_steps(
         for each in schemes
         for top in tops[: PLANNED if each == schemes[0] else 1]
     ]
+    leading = None
     for rank, ((problem, candidate), method, chosen) in enumerate(plans):
         # What costs this much beside swell cannot be the best.
         dearest = candidate.cost_beside_swell + (0.0 if method == "straight" else WORTH)
@@ -268,12 +270,15 @@ def match_steps(
             continue
         if method != "straight" and not (whole and _is_plannable(morph, method, polar)):
             continue
-        if morph.DIMENSION == 3 and chosen != schemes[0]:
+        # In space only the best of the straight ones is planned for; the rest takes too long.
+        if morph.DIMENSION == 3 and (chosen != schemes[0] or (method != "straight" and pairs != leading.pairs)):
             continue
         at = 0.7 + 0.3 * rank / len(plans)
         planning = _planned_steps(morph, frames, tolerance, method, threads)
         path = yield from parallel.part(planning, at, at + 0.3 / len(plans))
-        offer(pairs, morph, path, candidate.cost_beside_swell, work)
+        tried = offer(pairs, morph, path, candidate.cost_beside_swell, work)
+        if leading is None or _before(tried, leading):
+            leading = tried
     if best.report.element_wise is None:
         # The first answer, which nothing could better.
         best = replace(best, report=replace(best.report, element_wise=element_wise, straight_swell=swell_of(straight)))
